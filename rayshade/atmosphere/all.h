@@ -1,0 +1,14 @@
+// The closed list of atmospheric effects.  Append only: the position is the tag on the wire.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "rayshade/atmosphere/fog.h"
+#include "rayshade/atmosphere/mist.h"
+#include "rayshade/base/type_list.h"
+
+namespace rayshade {
+
+using AllEffects = TypeList<Fog, Mist>;
+using AnyEffect = AllEffects::Variant;
+
+}  // namespace rayshade

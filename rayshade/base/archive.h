@@ -1,0 +1,209 @@
+// Writer and Reader: bytes from values and back.
+//
+// A type lists its fields once, in `template <class Archive> void serialize(Archive&, T&)`, and that one list
+// serves both directions, so the two cannot disagree.  Bytes are little-endian and without padding whatever
+// the machine; a struct is never copied as a whole.
+//
+// A Reader trusts nothing: every count is checked against the bytes that are left before memory is taken, a
+// tag outside of its list or a missing byte makes the reader fail, and a failed reader yields zeros.  Ask
+// ok() at the end; a message is good only if ok() and nothing is left. SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace rayshade {
+
+using Bytes = std::vector<std::byte>;
+
+template <class T>
+concept PlainNumber = std::is_arithmetic_v<T> || std::is_enum_v<T>;
+
+static_assert(std::endian::native == std::endian::little,
+              "archive.h copies numbers as they lie in memory; a big-endian machine needs a byte swap here");
+
+class Writer {
+ public:
+  static constexpr bool kReading = false;
+
+  explicit Writer(Bytes& out) : out_(out) {}
+
+  template <class... T>
+  void operator()(const T&... values) {
+    (put(values), ...);
+  }
+
+ private:
+  void raw(const void* from, std::size_t size) {
+    const std::size_t at = out_.size();
+    out_.resize(at + size);
+    std::memcpy(out_.data() + at, from, size);
+  }
+  template <PlainNumber T>
+  void put(const T& value) {
+    raw(&value, sizeof value);
+  }
+  void putCount(std::size_t count) { put(static_cast<std::uint32_t>(count)); }
+  void put(const std::string& text) {
+    putCount(text.size());
+    raw(text.data(), text.size());
+  }
+  template <class T>
+  void put(const std::vector<T>& list) {
+    putCount(list.size());
+    if constexpr (PlainNumber<T> && !std::is_same_v<T, bool>) {
+      if (!list.empty()) raw(list.data(), list.size() * sizeof(T));
+    } else {
+      for (const T& element : list) put(element);
+    }
+  }
+  template <class T, std::size_t N>
+  void put(const std::array<T, N>& list) {
+    for (const T& element : list) put(element);
+  }
+  template <class T>
+  void put(const std::optional<T>& maybe) {
+    put(static_cast<std::uint8_t>(maybe.has_value()));
+    if (maybe) put(*maybe);
+  }
+  template <class... T>
+  void put(const std::variant<T...>& choice) {
+    put(static_cast<std::uint8_t>(choice.index()));
+    std::visit([this](const auto& value) { put(value); }, choice);
+  }
+  template <class T>
+  requires std::is_class_v<T>
+  void put(const T& value) {
+    serialize(*this, const_cast<T&>(value));  // a Writer reads its values only
+  }
+
+  Bytes& out_;
+};
+
+class Reader {
+ public:
+  static constexpr bool kReading = true;
+
+  explicit Reader(std::span<const std::byte> in) : in_(in) {}
+
+  bool ok() const { return ok_; }
+  std::size_t left() const { return in_.size(); }
+  void fail() {
+    ok_ = false;
+    in_ = {};
+  }
+
+  template <class... T>
+  void operator()(T&... values) {
+    (get(values), ...);
+  }
+
+ private:
+  void raw(void* to, std::size_t size) {
+    if (size > in_.size()) {
+      fail();
+      std::memset(to, 0, size);
+      return;
+    }
+    std::memcpy(to, in_.data(), size);
+    in_ = in_.subspan(size);
+  }
+  template <PlainNumber T>
+  void get(T& value) {
+    if constexpr (std::is_same_v<T, bool>) {
+      std::uint8_t byte = 0;
+      raw(&byte, 1);
+      if (byte > 1) fail();
+      value = byte == 1;
+    } else {
+      raw(&value, sizeof value);
+    }
+  }
+  // A count of things of at least `least` bytes each; fails when they cannot all be there.
+  std::size_t count(std::size_t least) {
+    std::uint32_t n = 0;
+    get(n);
+    if (n > in_.size() / least) {
+      fail();
+      return 0;
+    }
+    return n;
+  }
+  void get(std::string& text) {
+    text.resize(count(1));
+    if (!text.empty()) raw(text.data(), text.size());
+  }
+  template <class T>
+  void get(std::vector<T>& list) {
+    list.clear();
+    if constexpr (PlainNumber<T> && !std::is_same_v<T, bool>) {
+      list.resize(count(sizeof(T)));
+      if (!list.empty()) raw(list.data(), list.size() * sizeof(T));
+    } else {
+      const std::size_t n = count(1);
+      for (std::size_t i = 0; i < n && ok_; ++i) {
+        T element{};
+        get(element);
+        list.push_back(std::move(element));
+      }
+    }
+  }
+  template <class T, std::size_t N>
+  void get(std::array<T, N>& list) {
+    for (T& element : list) get(element);
+  }
+  template <class T>
+  void get(std::optional<T>& maybe) {
+    bool present = false;
+    get(present);
+    maybe.reset();
+    if (present) get(maybe.emplace());
+  }
+  template <class... T>
+  void get(std::variant<T...>& choice) {
+    std::uint8_t tag = 0;
+    get(tag);
+    if (tag >= sizeof...(T)) return fail();
+    getAlternative(choice, tag, std::index_sequence_for<T...>{});
+  }
+  template <class Variant, std::size_t... I>
+  void getAlternative(Variant& choice, std::uint8_t tag, std::index_sequence<I...>) {
+    ((tag == I ? get(choice.template emplace<I>()) : void()), ...);
+  }
+  template <class T>
+  requires std::is_class_v<T>
+  void get(T& value) { serialize(*this, value); }
+
+  std::span<const std::byte> in_;
+  bool ok_ = true;
+};
+
+template <class T>
+Bytes encode(const T& value) {
+  Bytes out;
+  Writer writer(out);
+  writer(value);
+  return out;
+}
+
+// The value, or nothing when the bytes are not exactly one value of this type.
+template <class T>
+std::optional<T> decode(std::span<const std::byte> bytes) {
+  Reader reader(bytes);
+  T value{};
+  reader(value);
+  if (!reader.ok() || reader.left() != 0) return std::nullopt;
+  return value;
+}
+
+}  // namespace rayshade

@@ -1,0 +1,33 @@
+// Linear RGB: radiance, reflectance or transmittance, unclamped.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+
+namespace rayshade {
+
+struct Color {
+  double r = 0, g = 0, b = 0;
+
+  friend constexpr bool operator==(const Color&, const Color&) = default;
+};
+
+inline constexpr Color kBlack{0, 0, 0};
+inline constexpr Color kWhite{1, 1, 1};
+
+constexpr Color operator+(Color a, Color b) { return {a.r + b.r, a.g + b.g, a.b + b.b}; }
+constexpr Color operator-(Color a, Color b) { return {a.r - b.r, a.g - b.g, a.b - b.b}; }
+constexpr Color operator*(Color a, Color b) { return {a.r * b.r, a.g * b.g, a.b * b.b}; }
+constexpr Color operator*(Color a, double s) { return {a.r * s, a.g * s, a.b * s}; }
+constexpr Color operator*(double s, Color a) { return a * s; }
+
+constexpr bool anyAbove(Color c, double limit) { return c.r > limit || c.g > limit || c.b > limit; }
+constexpr bool anyAbove(Color c, Color limit) { return c.r > limit.r || c.g > limit.g || c.b > limit.b; }
+constexpr double largest(Color c) { return std::max({c.r, c.g, c.b}); }
+
+template <class Archive>
+void serialize(Archive& archive, Color& c) {
+  archive(c.r, c.g, c.b);
+}
+
+}  // namespace rayshade

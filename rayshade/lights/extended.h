@@ -1,0 +1,46 @@
+// A spherical light that casts soft shadows, one shadow ray for each sample of the pixel.
+//
+//   extended radius  x y z                                                                   [world units]
+//
+// Shading uses the centre; the shadow ray goes to a point of the square [-r, r]^2 across the line of sight,
+// in the stratum of the ray's sample number: along the first axis the stratum's row, along the second its
+// column. SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "rayshade/lights/light.h"
+
+namespace rayshade {
+
+struct ExtendedLight {
+  Vec3 centre;
+  double radius = 0;
+
+  static constexpr std::string_view keyword = "extended";
+  static constexpr std::string_view examples[] = {"0.5  3 -4 5"};
+
+  static std::optional<ExtendedLight> parse(Arguments& in) {
+    const double radius = in.number();
+    return ExtendedLight{in.vector(), radius};
+  }
+  int points() const { return 1; }
+
+  LightSample sample(const LightQuery& query, int) const {
+    const Vec3 way = centre - query.position;
+    const Vec3 toward = normalize(way);
+    const auto [a, b] = basisAround(toward);
+    auto stratum = [&](int cell, Dimension use) {
+      return radius * (2 * (cell + uniform(query.key, use)) / query.side - 1);
+    };
+    const double x = stratum(query.sample / query.side, Dimension::lightU);
+    const double y = stratum(query.sample % query.side, Dimension::lightV);
+    const Vec3 jittered = way + x * a + y * b;
+    return {toward, normalize(jittered), length(jittered), 1};
+  }
+};
+
+template <class Archive>
+void serialize(Archive& archive, ExtendedLight& l) {
+  archive(l.centre, l.radius);
+}
+
+}  // namespace rayshade

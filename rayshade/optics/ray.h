@@ -1,0 +1,48 @@
+// A ray of light, followed backwards.
+//
+// It never changes its origin while it travels: all distances t are measured from where it was born, in world
+// units, so every task computes the same t for the same object whatever way the ray came.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "rayshade/base/color.h"
+#include "rayshade/base/random.h"
+#include "rayshade/base/vec.h"
+
+namespace rayshade {
+
+// What a ray can be inside of.
+struct Medium {
+  double index = 1;    // of refraction
+  double extinct = 1;  // share of the light that is left after one unit of distance
+};
+using MediumStack = std::vector<Medium>;  // innermost last; empty: the atmosphere
+
+struct Ray {
+  Vec3 origin, direction;       // |direction| = 1                                              [world units]
+  double time = 0;              // for moving objects                                           [scene time]
+  int depth = 0;                // 0 from the eye, +1 per reflection or refraction
+  int sample = 0;               // sample number inside the pixel: stratum of lights, lens and gloss
+  RandomKey key{};              // hash of the path so far
+  Color contribution = kWhite;  // weight in the pixel; what weighs too little is not followed
+  MediumStack media;
+};
+
+// A ray in the space of an object.  t along it is t along the world ray times `scale`.
+struct LocalRay {
+  Vec3 origin, direction;  // |direction| = 1                                                [object units]
+  double scale = 1;        // object units per world unit along this ray
+};
+
+template <class Archive>
+void serialize(Archive& archive, Medium& m) {
+  archive(m.index, m.extinct);
+}
+template <class Archive>
+void serialize(Archive& archive, Ray& r) {
+  archive(r.origin, r.direction, r.time, r.depth, r.sample, r.key, r.contribution, r.media);
+}
+
+}  // namespace rayshade

@@ -1,0 +1,117 @@
+// What a scene consists of.
+//
+// A scene is a stream of items.  Objects stand in the world or in a definition; `list`, `grid` and the
+// instance of a primitive leave no trace but a frame: anonymous aggregates are dissolved into their members
+// while the scene is read.  What must stay whole - a named object, the two operands of a CSG operation - is a
+// definition, and an object that uses it names it.
+//
+//   Frame          a step of the naming tree: transforms, surface, textures, parent
+//   SceneObject    a shape in a frame
+//   definition     objects under a frame tree of their own (its root is again kRootFrame)
+//
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "rayshade/base/ids.h"
+#include "rayshade/base/transform.h"
+#include "rayshade/optics/surface.h"
+#include "rayshade/shapes/all.h"
+#include "rayshade/textures/all.h"
+
+namespace rayshade {
+
+// A texture as it hangs on a frame: its own transforms map the space of the frame's parent to the texture's.
+struct PlacedTexture {
+  AnyTexture texture;
+  TransformChain transforms;
+};
+
+// From the space of what is inside the frame to the space of its parent.
+struct Frame {
+  FrameId parent = kRootFrame;
+  TransformChain transforms;
+  SurfaceId surface = kNoSurface;       // for everything inside that has none of its own
+  std::vector<PlacedTexture> textures;  // applied after those of the things inside, in this order
+};
+
+// `object NAME`: the definition as a whole, placed.
+struct Instance {
+  DefinitionId definition = kWorld;
+};
+
+enum class CsgOperation : std::uint8_t { unite, intersect, subtract };
+
+// A CSG node: its definition holds exactly two objects, the operands in the order of the file.
+struct Csg {
+  CsgOperation operation = CsgOperation::unite;
+  DefinitionId operands = kWorld;
+};
+
+using ObjectBody = std::variant<AnyShape, Instance, Csg>;
+
+struct SceneObject {
+  ObjectId id{};
+  DefinitionId container = kWorld;
+  FrameId frame = kRootFrame;
+  SurfaceId surface = kNoSurface;  // its own, if it has one
+  ObjectBody body;
+};
+
+// Pixels of a texture, row by row as in the file, `channels` bytes each.
+struct Image {
+  std::int32_t width = 0, height = 0, channels = 3;
+  std::vector<std::uint8_t> pixels;
+};
+
+// Takes the items of a scene one by one while it is read.
+//
+// Order: a frame, surface or image comes before what mentions it, with one exception.  The transforms of an
+// aggregate stand behind its `end`, so its frame comes after its members; `settled` is called whenever every
+// frame mentioned so far is known (at the end of each top-level statement).  A definition comes before its
+// first use.
+class SceneSink {
+ public:
+  virtual ~SceneSink() = default;
+  virtual void surface(SurfaceId id, const Surface& surface) = 0;
+  virtual void frame(FrameId id, Frame frame) = 0;
+  virtual void image(ImageId id, Image image) = 0;
+  virtual void object(SceneObject object) = 0;
+  virtual void settled() = 0;
+};
+
+template <class Archive>
+void serialize(Archive& archive, PlacedTexture& t) {
+  archive(t.texture, t.transforms);
+}
+template <class Archive>
+void serialize(Archive& archive, Frame& f) {
+  archive(f.parent, f.transforms, f.surface, f.textures);
+}
+template <class Archive>
+void serialize(Archive& archive, Instance& i) {
+  archive(i.definition);
+}
+template <class Archive>
+void serialize(Archive& archive, Csg& c) {
+  archive(c.operation, c.operands);
+}
+template <class Archive>
+void serialize(Archive& archive, SceneObject& o) {
+  archive(o.id, o.container, o.frame, o.surface, o.body);
+}
+template <class Archive>
+void serialize(Archive& archive, Image& i) {
+  archive(i.width, i.height, i.channels, i.pixels);
+  if constexpr (Archive::kReading) {
+    const bool sized =
+        i.width > 0 && i.height > 0 && i.channels > 0 && i.channels <= 4 &&
+        i.pixels.size() == std::size_t(i.width) * std::size_t(i.height) * std::size_t(i.channels);
+    if (!sized) archive.fail();
+  }
+}
+
+}  // namespace rayshade

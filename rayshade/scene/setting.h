@@ -1,0 +1,95 @@
+// What is known everywhere: the lights, the air, the limits, and how the picture is taken.
+//
+// A few hundred bytes whatever the size of the scene; every task has it.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "rayshade/atmosphere/all.h"
+#include "rayshade/base/color.h"
+#include "rayshade/lights/all.h"
+
+namespace rayshade {
+
+struct Limits {
+  std::int32_t maxDepth = 5;          // of a ray; the eye's rays have depth 0
+  Color cutoff{0.002, 0.002, 0.002};  // a secondary ray that weighs no more than this is not traced
+};
+
+struct Setting {
+  std::vector<LightSource> lights;  // in the order of the file; no ambient lights
+  Color ambient = kWhite;           // `light I ambient`
+  Color background = kBlack;
+  double airIndex = 1;                // of refraction, outside of everything
+  std::vector<AnyEffect> atmosphere;  // in the order of the file
+  Limits limits;
+  bool shadows = true;              // -n turns them off
+  bool transparentShadows = true;   // `shadowtransp` and -o toggle
+  std::int32_t samplesPerSide = 3;  // of a pixel: strata of lights and gloss
+};
+
+struct Camera {
+  Vec3 eye{0, -10, 0}, target{0, 0, 0}, up{0, 0, 1};  // world
+  double horizontalFov = 45;                          // degrees
+  std::optional<double> verticalFov;                  // degrees; else horizontalFov * height / width
+  double aperture = 0;                                // half width of the (square) lens; 0: a pinhole
+  std::optional<double> focalDistance;                // else |target - eye|
+  std::optional<double> eyeSeparation;
+  enum class Eye : std::uint8_t { middle, left, right } eyeShown = Eye::middle;
+};
+
+struct PixelFilter {
+  bool gaussian = false;
+  double width = 1;  // pixels; 1.8 when gaussian and not said otherwise
+};
+
+// The picture that is wanted.
+struct PictureSpec {
+  std::int32_t width = 512, height = 512;             // of the whole screen                  [pixels]
+  std::optional<std::array<std::int32_t, 4>> window;  // x0 x1 y0 y1, inclusive; y from the top
+  std::array<double, 4> crop{0, 1, 0, 1};             // left right bottom top, shares of the window
+  std::int32_t samplesPerSide = 3;                    // side^2 samples in a pixel, 1..8
+  bool jitter = true;
+  PixelFilter filter;
+  Color contrast{0.2, 0.15, 0.3};  // adaptive supersampling
+  double gamma = 1;
+  std::int32_t frames = 1, firstFrame = 0;
+  double frameLength = 1, startTime = 0, shutter = 0;  // scene time
+};
+
+// How the scene wants its report.
+struct ReportSpec {
+  bool wanted = false, verbose = false, quiet = false;
+  std::int32_t everyRows = 10;
+  std::string file;  // empty: standard error
+};
+
+// Everything in a scene file that is not an item.
+struct SceneHead {
+  Setting setting;
+  Camera camera;
+  PictureSpec picture;
+  ReportSpec report;
+  std::string outputFile;  // `outfile`; empty: not said
+};
+
+template <class Archive>
+void serialize(Archive& archive, Limits& l) {
+  archive(l.maxDepth, l.cutoff);
+}
+template <class Archive>
+void serialize(Archive& archive, Setting& s) {
+  archive(s.lights, s.ambient, s.background, s.airIndex, s.atmosphere, s.limits, s.shadows,
+          s.transparentShadows, s.samplesPerSide);
+  if constexpr (Archive::kReading) {
+    if (s.samplesPerSide < 1) {
+      s.samplesPerSide = 1;
+      archive.fail();
+    }
+  }
+}
+
+}  // namespace rayshade

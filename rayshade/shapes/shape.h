@@ -1,0 +1,70 @@
+// What a shape is.
+//
+// A shape is plain data in its own (object) space plus a few pure functions; nothing in it is written after
+// the scene was read, so asking twice, or asking another shape in between, changes nothing.  To add one: a
+// file with the struct, one line in all.h.
+//
+//   keyword      the word of the language that makes one
+//   closed       may be an operand of CSG without advice
+//   examples     what may follow the keyword (after the optional surface): tests and documents read them
+//   parse        reads the arguments; nothing when the shape is degenerate (the parser warns and drops it)
+//   bounds       object space, not padded
+//   intersect    the smallest t > tMin at which the ray meets the shape, or kNoHit.  t is measured along the
+//   unit
+//                direction of the local ray.  All roots of one ray are the same numbers whatever tMin, so
+//                intersect(ray, intersect(ray, t)) walks through them.  Exact tangency is a hit; a ray that
+//                lies in a plane misses it.  No absolute epsilon.
+//   pointAt      what is at t, a root that intersect returned for that ray
+//   coordinates  u, v and the tangents at a point of the shape's space, for textures.  `at` is the hit;
+//   `position`
+//                may differ from at.position (texture mapping may move it)
+//   serialize    its fields, for the wire
+//
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <concepts>
+#include <optional>
+#include <string_view>
+
+#include "rayshade/base/archive.h"
+#include "rayshade/base/bounds.h"
+#include "rayshade/optics/ray.h"
+#include "rayshade/shapes/arguments.h"
+
+namespace rayshade {
+
+inline constexpr double kNoHit = kInfinity;
+
+// A point of a surface, in the shape's space.
+struct ShapePoint {
+  Vec3 position;         // moved onto the surface as well as the shape can
+  Vec3 normal;           // unit, for shading (interpolated on Phong triangles)
+  Vec3 geometricNormal;  // unit, of the surface itself; outward on closed shapes, else as in the language
+                         // reference
+  Vec3 local;            // what coordinates() wants to know again: barycentrics, a face, ...
+  double error = 0;      // the true surface is at most this far from `position`           [object units]
+};
+
+struct SurfaceCoordinates {
+  double u = 0, v = 0;
+  Vec3 dpdu{1, 0, 0}, dpdv{0, 1, 0};  // unit, object space
+};
+
+// Relative rounding error of a few operations in a row (Higham's gamma), with room to spare.
+inline constexpr double kRounding = 16 * 0x1p-53;
+
+template <class S>
+concept Shape = requires(const S shape, const LocalRay ray, double t, const ShapePoint at,
+                         Arguments& arguments) {
+  { S::keyword } -> std::convertible_to<std::string_view>;
+  { S::closed } -> std::convertible_to<bool>;
+  { S::parse(arguments) } -> std::same_as<std::optional<S>>;
+  { shape.bounds() } -> std::same_as<Bounds>;
+  { shape.intersect(ray, t) } -> std::same_as<double>;
+  { shape.pointAt(ray, t) } -> std::same_as<ShapePoint>;
+  { shape.coordinates(at, at.position) } -> std::same_as<SurfaceCoordinates>;
+  S::examples[0];
+};
+
+}  // namespace rayshade
