@@ -10,6 +10,7 @@
 
 #include "rayshade/atmosphere/all.h"
 #include "rayshade/base/color.h"
+#include "rayshade/image/picture_spec.h"
 #include "rayshade/lights/all.h"
 
 namespace rayshade {
@@ -39,25 +40,6 @@ struct Camera {
   std::optional<double> focalDistance;                // else |target - eye|
   std::optional<double> eyeSeparation;
   enum class Eye : std::uint8_t { middle, left, right } eyeShown = Eye::middle;
-};
-
-struct PixelFilter {
-  bool gaussian = false;
-  double width = 1;  // pixels; 1.8 when gaussian and not said otherwise
-};
-
-// The picture that is wanted.
-struct PictureSpec {
-  std::int32_t width = 512, height = 512;             // of the whole screen                  [pixels]
-  std::optional<std::array<std::int32_t, 4>> window;  // x0 x1 y0 y1, inclusive; y from the top
-  std::array<double, 4> crop{0, 1, 0, 1};             // left right bottom top, shares of the window
-  std::int32_t samplesPerSide = 3;                    // side^2 samples in a pixel, 1..8
-  bool jitter = true;
-  PixelFilter filter;
-  Color contrast{0.2, 0.15, 0.3};  // adaptive supersampling
-  double gamma = 1;
-  std::int32_t frames = 1, firstFrame = 0;
-  double frameLength = 1, startTime = 0, shutter = 0;  // scene time
 };
 
 // How the scene wants its report.
