@@ -18,6 +18,7 @@ class Arguments {
   virtual double number() = 0;                     // a signed number or a parenthesised expression
   virtual bool numberFollows() = 0;                // is the next token the start of a number?
   virtual bool accept(std::string_view word) = 0;  // takes the next word if it is this keyword
+  virtual bool fileNameFollows() = 0;              // is the next token a name that is not a keyword?
   virtual std::string fileName() = 0;
   virtual Surface surface() = 0;  // a surface-spec: a name, cursurf, components
   // Something is odd but the scene goes on (`file:line: warning: ...`).
