@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rayshade/shapes/frustum.h"
+
+#include <numbers>
+
+#include "rayshade/base/transform.h"
+
+namespace rayshade {
+
+std::optional<Frustum> frustumBetween(Vec3 base, double baseRadius, Vec3 top, double topRadius) {
+  if (topRadius < baseRadius) {
+    std::swap(base, top);
+    std::swap(baseRadius, topRadius);
+  }
+  // differs from rayshade4: length and radii may be as small as you like, but not zero.
+  const Vec3 between = top - base;
+  const double height = length(between);
+  const bool finite = isFinite(base) && std::isfinite(height) && std::isfinite(topRadius);
+  if (!(height > 0) || !(baseRadius >= 0) || !(topRadius > 0) || !finite) return std::nullopt;
+  return Frustum{base, normalize(between), height, baseRadius, topRadius};
+}
+
+Bounds Frustum::bounds() const {
+  const Vec3 reach{std::hypot(axis.y, axis.z), std::hypot(axis.z, axis.x), std::hypot(axis.x, axis.y)};
+  const Vec3 end = base + length * axis;
+  return join(Bounds{base - radius * reach, base + radius * reach},
+              Bounds{end - endRadius * reach, end + endRadius * reach});
+}
+
+double Frustum::intersect(const LocalRay& ray, double tMin) const {
+  const Vec3 from = ray.origin - base;
+  const double height = dot(from, axis), climb = dot(ray.direction, axis);
+  const Vec3 f = from - height * axis, e = ray.direction - climb * axis;
+  const double there = radius + growth() * height, widening = growth() * climb;  // F and E of the header
+
+  const double a = dot(e, e) - widening * widening;
+  const double b = dot(f, e) - there * widening;
+  const double c = dot(f, f) - there * there;
+  const Vec3 slip = there * e - widening * f, turn = cross(f, e);
+  double discriminant = dot(slip, slip) - dot(turn, turn);
+  // A ray steeper than the side always meets the double cone twice, if only at the apex: less is rounding.
+  if (a < 0) discriminant = std::max(discriminant, 0.0);
+  if (!(discriminant >= 0)) return kNoHit;
+
+  const double q = -(b + std::copysign(std::sqrt(discriminant), b));
+  double nearest = kNoHit;
+  // A ray along a generator has a = 0 and one root, a ray along a cylinder none, a ray through the apex may
+  // have q = 0: what is infinite or NaN then fails the comparisons.
+  for (const double root : {q / a, c / q}) {
+    const double z = height + root * climb;
+    if (root > tMin && root < nearest && z >= 0 && z <= length) nearest = root;
+  }
+  return nearest;
+}
+
+ShapePoint Frustum::pointAt(const LocalRay& ray, double t) const {
+  const Vec3 from = ray.origin + t * ray.direction - base;
+  const double z = std::min(std::max(dot(from, axis), 0.0), length);
+  Vec3 radial = from - z * axis;
+  radial = normalize(radial - dot(radial, axis) * axis);
+  const double k = growth();
+  Vec3 normal = normalize(radial - k * axis);
+  if (radial == Vec3{}) {  // on the axis: the apex, which looks along it
+    radial = basisAround(axis).first;
+    normal = k > 0 ? -axis : radial;
+  }
+  const Vec3 position = base + z * axis + (radius + k * z) * radial;
+  return {position, normal, normal, {}, kRounding * (maxAbs(base) + length + endRadius)};
+}
+
+SurfaceCoordinates Frustum::coordinates(Vec3 position) const {
+  const Affine place = alongAxis(base, axis, 1, length);
+  const Vec3 canonical = mapPoint(place.inverse, position);
+  const double distance = std::hypot(canonical.x, canonical.y);
+  SurfaceCoordinates at;
+  at.v = canonical.z;
+  if (distance > 0) {
+    const double turn = std::acos(std::clamp(canonical.x / distance, -1.0, 1.0)) / (2 * std::numbers::pi);
+    at.u = canonical.y < 0 ? 1 - turn : turn;
+  }
+  const Vec3 radial = distance > 0 ? Vec3{canonical.x / distance, canonical.y / distance, 0} : Vec3{1, 0, 0};
+  at.dpdu = normalize(mapVector(place.forward, {-radial.y, radial.x, 0}));
+  // differs from rayshade4: the cone's tangents are turned into place once, not twice.
+  at.dpdv = normalize(axis + growth() * normalize(mapVector(place.forward, radial)));
+  return at;
+}
+
+}  // namespace rayshade

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rayshade/shapes/polygon.h"
+
+#include "rayshade/shapes/plane.h"
+#include "rayshade/shapes/shear.h"
+
+namespace rayshade {
+namespace {
+
+// Newell's normal with the first corner as origin, so that a polygon far away loses nothing, and divided by
+// `size`, the extent of the polygon, on the way; its length is twice the area in these units.
+Vec3 newell(const std::vector<Vec3>& corners, double size) {
+  Vec3 sum;
+  for (std::size_t i = 1; i + 1 < corners.size(); ++i)
+    sum = sum + cross((corners[i] - corners[0]) / size, (corners[i + 1] - corners[0]) / size);
+  return sum;
+}
+
+// Does the outline wind around the ray, or pass through it?
+template <class Shear>
+bool windsAround(const std::vector<Vec3>& corners, const Shear& shear) {
+  int winding = 0;
+  ShearedPoint a = shear(corners.back());
+  for (const Vec3& corner : corners) {
+    const ShearedPoint b = shear(corner);
+    if ((a.y <= 0) != (b.y <= 0)) {
+      const double side = turn(a, b);
+      if (side == 0) return true;
+      if ((b.y > 0) == (side > 0)) winding += b.y > 0 ? 1 : -1;  // crosses the half-line x > 0
+    } else if (b.y == 0 && (b.x == 0 || (a.y == 0 && (a.x < 0) != (b.x < 0)))) {
+      return true;  // the ray meets a corner or a level edge
+    }
+    a = b;
+  }
+  return winding != 0;
+}
+
+// t, moved to where the ray is inside of the extent.
+double insideExtent(const Bounds& extent, const LocalRay& ray, double t) {
+  double entry = -kInfinity, exit = kInfinity;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double direction = ray.direction[axis];
+    if (direction == 0) continue;
+    const double toLow = (extent.low[axis] - ray.origin[axis]) / direction;
+    const double toHigh = (extent.high[axis] - ray.origin[axis]) / direction;
+    entry = std::max(entry, std::min(toLow, toHigh));
+    exit = std::min(exit, std::max(toLow, toHigh));
+  }
+  return std::min(std::max(t, entry), exit);
+}
+
+}  // namespace
+
+std::optional<Polygon> Polygon::parse(Arguments& in) {
+  Polygon polygon;
+  polygon.corners.clear();
+  while (in.numberFollows()) polygon.corners.push_back(in.vector());
+  if (polygon.corners.size() < 3) in.fail("a polygon has three corners or more");
+  for (const Vec3& corner : polygon.corners)
+    if (!(maxAbs(corner) < 0x1p+500)) return std::nullopt;
+  const double size = maxAbs(polygon.bounds().size());
+  if (!(size > 0x1p-480)) return std::nullopt;
+  const Vec3 sum = newell(polygon.corners, size);
+  // differs from rayshade4: a polygon may be as small as you like; only one whose area is rounding is not one.
+  if (!(length(sum) > kRounding * static_cast<double>(polygon.corners.size()))) return std::nullopt;
+  polygon.normal = normalize(sum);
+  constexpr double kBend = 1e-4;  // more than decimals in a file explain
+  for (const Vec3& corner : polygon.corners) {
+    if (std::abs(dot(corner - polygon.corners[0], polygon.normal)) <= kBend * size) continue;
+    in.warn("the corners of this polygon are not in one plane");
+    break;
+  }
+  return polygon;
+}
+
+Bounds Polygon::bounds() const {
+  Bounds b;
+  for (const Vec3& corner : corners) b = join(b, corner);
+  return b;
+}
+
+double Polygon::intersect(const LocalRay& ray, double tMin) const {
+  const double t = meetPlane(ray, corners[0], normal);
+  if (!(std::abs(t) < kNoHit)) return kNoHit;
+  const bool inside = lookAlong(ray, [this](const auto& shear) { return windsAround(corners, shear); });
+  if (!inside) return kNoHit;
+  const double clipped = insideExtent(bounds(), ray, t);
+  return clipped > tMin ? clipped : kNoHit;
+}
+
+ShapePoint Polygon::pointAt(const LocalRay& ray, double t) const {
+  const Vec3 position = ontoPlane(ray.origin + t * ray.direction, corners[0], normal);
+  return {position, normal, normal, {}, kRounding * (maxAbs(position) + maxAbs(corners[0]))};
+}
+
+Polygon Polygon::flipped() const { return {{corners.rbegin(), corners.rend()}, -normal}; }
+
+}  // namespace rayshade

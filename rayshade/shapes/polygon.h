@@ -1,0 +1,54 @@
+// The plane polygon: convex or not, also one that crosses itself.
+//
+//   polygon  p1 p2 p3 ...         three corners or more                                        [object units]
+//
+// The plane goes through p1 with Newell's normal; the front is the side from which the corners run
+// counter-clockwise.  The ray is inside when the outline, seen along the ray (shear.h), winds around it a
+// number of times that is not zero, or passes through it exactly; so polygons that share an edge do not leak.
+// t is that of the plane, but not beyond the extent of the corners: that matters when the corners are not
+// quite in a plane and the ray grazes it.
+// Source: Newell's method as in Sutherland, Sproull & Schumacker, 1974; winding number: Sunday, 2001.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "rayshade/shapes/shape.h"
+
+namespace rayshade {
+
+struct Polygon {
+  std::vector<Vec3> corners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  Vec3 normal{0, 0, 1};  // unit
+
+  static constexpr std::string_view keyword = "polygon";
+  static constexpr bool closed = false;
+  static constexpr std::string_view examples[] = {"0 0 0  1 0 0  0 1 0", "0 0 1  4 0 1  4 4 1  2 1 1  0 4 1"};
+
+  static std::optional<Polygon> parse(Arguments& in);
+
+  Bounds bounds() const;
+  double intersect(const LocalRay& ray, double tMin) const;
+  ShapePoint pointAt(const LocalRay& ray, double t) const;
+  SurfaceCoordinates coordinates(const ShapePoint&, Vec3 position) const {
+    SurfaceCoordinates at;  // x and y of object space, whatever the plane
+    at.u = position.x;
+    at.v = position.y;
+    return at;
+  }
+
+  Polygon flipped() const;  // for option -f
+};
+
+template <class Archive>
+void serialize(Archive& archive, Polygon& p) {
+  archive(p.corners, p.normal);
+  if constexpr (Archive::kReading) {
+    if (p.corners.size() < 3) {
+      p = {};
+      archive.fail();
+    }
+  }
+}
+
+}  // namespace rayshade

@@ -1,0 +1,62 @@
+// Arguments over a string: words and numbers apart by blanks, no expressions.
+//
+// fail() throws std::runtime_error; warnings are kept; surface() gives the default surface without reading.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <charconv>
+#include <optional>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "rayshade/shapes/arguments.h"
+
+namespace rayshade {
+
+class TextArguments final : public Arguments {
+ public:
+  explicit TextArguments(std::string_view text) {
+    std::istringstream in{std::string(text)};
+    for (std::string word; in >> word;) words_.push_back(word);
+  }
+
+  double number() override {
+    const std::optional<double> value = at_ < words_.size() ? numberIn(words_[at_]) : std::nullopt;
+    if (!value) fail("a number is missing");
+    ++at_;
+    return *value;
+  }
+  bool numberFollows() override { return at_ < words_.size() && numberIn(words_[at_]).has_value(); }
+  bool accept(std::string_view word) override {
+    const bool taken = at_ < words_.size() && words_[at_] == word;
+    if (taken) ++at_;
+    return taken;
+  }
+  bool fileNameFollows() override { return at_ < words_.size() && !numberFollows(); }
+  std::string fileName() override {
+    if (at_ == words_.size()) fail("a file name is missing");
+    return words_[at_++];
+  }
+  Surface surface() override { return defaultSurface(); }
+  void warn(const std::string& message) override { warnings_.push_back(message); }
+  [[noreturn]] void fail(const std::string& message) override { throw std::runtime_error(message); }
+
+  bool allTaken() const { return at_ == words_.size(); }
+  const std::vector<std::string>& warnings() const { return warnings_; }
+
+ private:
+  static std::optional<double> numberIn(const std::string& word) {
+    double value = 0;
+    const char* const end = word.data() + word.size();
+    const auto [stop, error] = std::from_chars(word.data(), end, value);
+    return error == std::errc() && stop == end ? std::optional(value) : std::nullopt;
+  }
+
+  std::vector<std::string> words_;
+  std::size_t at_ = 0;
+  std::vector<std::string> warnings_;
+};
+
+}  // namespace rayshade
