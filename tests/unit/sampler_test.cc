@@ -1,0 +1,406 @@
+// The sampler: positions and strata, and that its rows are those of the plain rule for any order of supply.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rayshade/image/sampler.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numeric>
+#include <random>
+
+#include "rayshade/image/filter.h"
+
+namespace rayshade {
+namespace {
+
+using Rows = std::vector<std::vector<Color>>;
+constexpr std::uint64_t kSeed = 7;
+constexpr std::uint32_t kFrame = 3;
+
+PictureSpec specOf(std::int32_t width, std::int32_t height, std::int32_t side) {
+  PictureSpec spec;
+  spec.width = width;
+  spec.height = height;
+  spec.samplesPerSide = side;
+  return spec;
+}
+
+// A scene: edges, a fine pattern that refines again and again, smooth parts, black, light above 1.
+Color colorOf(const PictureSpec& spec, const SampleId& id) {
+  const SamplePosition at = samplePosition(spec, kSeed, kFrame, id);
+  if (std::hypot(at.u - 7, at.v - 9) < 5.3) return {2 + at.u / 50, 0.4, 0.1};
+  if (at.u + 0.3 * at.v > 24) return {0.5 + 0.5 * std::sin(at.u * at.v), 0.5, 0.5};
+  if (at.v > 20) return {0, 0, 1e-6 * at.u};
+  return {0.2 + at.u / 200, 0.3, 0.4 + at.v / 300};
+}
+
+// The rule as it stands in rayshade, with all of the picture and of the line below it in memory.
+struct Reference {
+  Rows rows;
+  std::uint64_t refined = 0;
+};
+Reference reference(const PictureSpec& spec) {
+  const PixelArea area = *pixelArea(spec);
+  const int side = spec.samplesPerSide, cells = side * side;
+  const auto weights = filterWeights(spec.filter, side);
+  struct Pixel {
+    Color color;
+    int cell = 0;
+    bool full = false;
+  };
+  std::vector<std::vector<Pixel>> lines(static_cast<std::size_t>(area.height) + 1,
+                                        std::vector<Pixel>(static_cast<std::size_t>(area.width)));
+  auto at = [&](int x, int y) -> Pixel& {
+    return lines[static_cast<std::size_t>(y)][static_cast<std::size_t>(x)];
+  };
+  auto trace = [&](int x, int y, int cell) { return colorOf(spec, {area.x + x, area.y + y, cell}); };
+  auto fill = [&](int x, int y) {
+    Pixel& pixel = at(x, y);
+    const std::size_t first = static_cast<std::size_t>(pixel.cell);
+    pixel.color = trace(x, y, pixel.cell) * weights[first];
+    for (std::size_t cell = 0; cell < weights.size(); ++cell)
+      if (cell != first) pixel.color = pixel.color + trace(x, y, static_cast<int>(cell)) * weights[cell];
+    pixel.full = true;
+  };
+
+  Reference result;
+  for (int y = 0; y <= area.height; ++y)
+    for (int x = 0; x < area.width; ++x) {
+      if (y == 0 || y == area.height - 1 || x == 0 || x == area.width - 1) {
+        fill(x, y);
+        continue;
+      }
+      const RandomKey key = sampleKey(kSeed, kFrame, static_cast<std::uint32_t>(area.x + x),
+                                      static_cast<std::uint32_t>(area.y + y), 0xffffffffu);
+      at(x, y).cell = static_cast<int>(uniform(key, Dimension::firstCell) * cells);
+      at(x, y).color = trace(x, y, at(x, y).cell);
+    }
+  for (int y = 1; cells > 1 && y < area.height; ++y) {
+    for (bool changed = true; changed;) {
+      changed = false;
+      for (int x = 1; x + 1 < area.width; ++x) {
+        const int cross[5][2] = {{x, y - 1}, {x - 1, y}, {x, y}, {x + 1, y}, {x, y + 1}};
+        std::array<Color, 5> colors;
+        for (std::size_t i = 0; i < 5; ++i) colors[i] = at(cross[i][0], cross[i][1]).color;
+        if (!tooMuchContrast(colors, spec.contrast)) continue;
+        for (const auto& [cx, cy] : cross) {
+          if (at(cx, cy).full) continue;
+          fill(cx, cy);
+          changed = true;
+          if (cy < area.height) ++result.refined;
+        }
+      }
+    }
+  }
+  for (int y = 0; y < area.height; ++y) {
+    result.rows.emplace_back();
+    for (int x = 0; x < area.width; ++x) result.rows.back().push_back(at(x, y).color);
+  }
+  return result;
+}
+
+// Chooses which of `count` samples on the way comes next.
+using Order = std::function<std::size_t(std::size_t count)>;
+
+Rows run(const PictureSpec& spec, std::size_t window, const Order& order, Sampler::Guessing guessing,
+         SamplerCounts* counts = nullptr) {
+  Sampler sampler(spec, kSeed, kFrame, guessing);
+  std::vector<SampleId> flying, batch(window);
+  std::vector<Color> row;
+  Rows rows;
+  while (!sampler.finished()) {
+    const std::size_t n = sampler.next(std::span(batch).first(window - flying.size()));
+    flying.insert(flying.end(), batch.begin(), batch.begin() + static_cast<std::ptrdiff_t>(n));
+    if (flying.empty()) {
+      ADD_FAILURE() << "stuck at row " << rows.size();
+      break;
+    }
+    const std::size_t chosen = order(flying.size());
+    const SampleId id = flying[chosen];
+    flying.erase(flying.begin() + static_cast<std::ptrdiff_t>(chosen));
+    sampler.supply(id, colorOf(spec, id));
+    while (sampler.takeRow(row)) rows.push_back(row);
+  }
+  if (counts) *counts = sampler.counts();
+  return rows;
+}
+
+std::size_t oldest(std::size_t) { return 0; }
+std::size_t newest(std::size_t count) { return count - 1; }
+
+TEST(SampleNumbers, AreAPermutationOfTheStrata) {
+  for (std::int32_t side = 1; side <= 8; ++side) {
+    std::vector<std::int32_t> numbers, expected(static_cast<std::size_t>(side * side));
+    for (std::int32_t cell = 0; cell < side * side; ++cell) numbers.push_back(sampleNumber(side, cell));
+    std::sort(numbers.begin(), numbers.end());
+    std::iota(expected.begin(), expected.end(), side >= 6 ? 1 : 0);
+    EXPECT_EQ(numbers, expected) << side;
+  }
+}
+
+TEST(SampleNumbers, OfTheLargeSidesFormMagicSquares) {
+  for (std::int32_t side : {6, 7, 8}) {
+    const std::int32_t magic = side * (side * side + 1) / 2;
+    for (std::int32_t i = 0; i < side; ++i) {
+      std::int32_t row = 0, column = 0;
+      for (std::int32_t j = 0; j < side; ++j) {
+        row += sampleNumber(side, j + i * side);
+        column += sampleNumber(side, i + j * side);
+      }
+      EXPECT_EQ(row, magic) << side << " row " << i;
+      EXPECT_EQ(column, magic) << side << " column " << i;
+    }
+  }
+}
+
+TEST(SamplePosition, WithoutJitterIsTheUpperLeftCornerOfTheCell) {
+  PictureSpec spec = specOf(64, 64, 4);
+  spec.jitter = false;
+  spec.filter.width = 2;
+  const SamplePosition at = samplePosition(spec, kSeed, 0, {10, 20, 6});  // column 2, row 1
+  EXPECT_EQ(at.u, 10.0);
+  EXPECT_EQ(at.v, 19.5);
+  EXPECT_EQ(at.number, 14);
+}
+
+TEST(SamplePosition, WithJitterFillsTheCell) {
+  PictureSpec spec = specOf(64, 64, 2);
+  double low = 1, high = 0, mean = 0;
+  for (std::int32_t x = 0; x < 1000; ++x) {
+    const SamplePosition at = samplePosition(spec, kSeed, 0, {x, 5, 1});
+    const double inCell = at.u - x;  // 0 .. 0.5
+    low = std::min(low, inCell);
+    high = std::max(high, inCell);
+    mean += inCell / 1000;
+    EXPECT_GE(at.v, 4.5);
+    EXPECT_LT(at.v, 5.0);
+  }
+  EXPECT_GE(low, 0);
+  EXPECT_LT(low, 0.01);
+  EXPECT_LT(high, 0.5);
+  EXPECT_GT(high, 0.49);
+  EXPECT_NEAR(mean, 0.25, 0.02);
+}
+
+TEST(SamplePosition, TimeGoesByFrameAndStratum) {
+  PictureSpec spec = specOf(64, 64, 2);
+  spec.startTime = 10;
+  spec.frameLength = 2;
+  EXPECT_EQ(samplePosition(spec, kSeed, 3, {0, 0, 2}).time, 16);  // no shutter: the start of the frame
+  spec.shutter = 1;
+  const double time = samplePosition(spec, kSeed, 3, {0, 0, 2}).time;  // cell 2 has number 3
+  EXPECT_GE(time, 16.75);
+  EXPECT_LT(time, 17);
+  spec.jitter = false;
+  EXPECT_EQ(samplePosition(spec, kSeed, 3, {0, 0, 2}).time, 16.75);
+}
+
+TEST(SamplePosition, LensPointLiesInTheStratumOfTheNumber) {
+  const PictureSpec spec = specOf(64, 64, 3);
+  for (std::int32_t cell = 0; cell < 9; ++cell) {
+    const SamplePosition at = samplePosition(spec, kSeed, 0, {1, 2, cell});
+    EXPECT_EQ(std::floor((at.lensX + 1) * 1.5), at.number % 3);
+    EXPECT_EQ(std::floor((at.lensY + 1) * 1.5), at.number / 3);
+  }
+}
+
+TEST(SamplePosition, DiffersBySeedFramePixelAndCell) {
+  const PictureSpec spec = specOf(64, 64, 3);
+  const auto key = samplePosition(spec, 1, 1, {1, 2, 0}).key;
+  EXPECT_EQ(samplePosition(spec, 1, 1, {1, 2, 0}).key, key);
+  EXPECT_NE(samplePosition(spec, 2, 1, {1, 2, 0}).key, key);
+  EXPECT_NE(samplePosition(spec, 1, 2, {1, 2, 0}).key, key);
+  EXPECT_NE(samplePosition(spec, 1, 1, {2, 1, 0}).key, key);
+  EXPECT_NE(samplePosition(spec, 1, 1, {1, 2, 1}).key, key);
+}
+
+TEST(Contrast, IsRelativeToTheSumOfTheExtremes) {
+  const Color threshold{0.2, 0.2, 0.2};
+  auto test = [&](Color a, Color b) {
+    return tooMuchContrast(std::array<Color, 5>{a, a, b, a, a}, threshold);
+  };
+  EXPECT_FALSE(test({4, 4, 4}, {4, 4, 4}));
+  EXPECT_FALSE(test({3, 0, 0}, {2, 0, 0}));     // 1 / 5
+  EXPECT_TRUE(test({3.001, 0, 0}, {2, 0, 0}));  // in red
+  EXPECT_TRUE(test({0, 0, 2}, {0, 0, 3.001}));  // in blue
+  EXPECT_TRUE(test({1e-5, 0, 0}, {2e-6, 0, 0}));
+  EXPECT_FALSE(test({9e-6, 0, 0}, {0, 0, 0}));  // too dark
+  EXPECT_FALSE(test({-1, -1, -1}, {1, 1, 1}));  // no light together
+}
+
+TEST(Sampler, GivesTheRowsOfThePlainRuleForAnyOrder) {
+  std::mt19937 random(1);
+  const Order anyOne = [&](std::size_t count) { return random() % count; };
+  for (auto [side, contrast] : {std::pair{2, 1.0}, {3, 1.0}, {3, 0.5}, {6, 1.0}}) {
+    PictureSpec spec = specOf(37, 29, side);
+    spec.contrast = spec.contrast * contrast;
+    spec.filter = {side == 3, 1.8};
+    const Reference expected = reference(spec);
+    ASSERT_GT(expected.refined, 50u);  // or else the test tests nothing
+    ASSERT_LT(expected.refined, 900u);
+    for (auto guessing : {Sampler::Guessing::no, Sampler::Guessing::yes})
+      for (std::size_t window : {1u, 2u, 17u, 300u, 3000u})
+        for (const Order& order : {Order(oldest), Order(newest), anyOne})
+          EXPECT_TRUE(run(spec, window, order, guessing) == expected.rows) << side << " window " << window;
+  }
+}
+
+TEST(Sampler, GivesTheRowsOfThePlainRuleForAnySize) {
+  std::mt19937 random(2);
+  const Order anyOne = [&](std::size_t count) { return random() % count; };
+  for (std::int32_t side : {1, 2, 8})
+    for (auto [width, height] : {std::pair{1, 1},
+                                 {1, 9},
+                                 {9, 1},
+                                 {2, 2},
+                                 {2, 9},
+                                 {9, 2},
+                                 {3, 3},
+                                 {3, 20},
+                                 {20, 3},
+                                 {8, 8},
+                                 {9, 17}}) {
+      PictureSpec spec = specOf(40, 40, side);
+      spec.window = {4, 4 + width - 1, 6, 6 + height - 1};
+      EXPECT_TRUE(run(spec, 50, anyOne, Sampler::Guessing::yes) == reference(spec).rows)
+          << width << " x " << height << " side " << side;
+    }
+}
+
+TEST(Sampler, LineBelowThePictureRefinesTheLastLineButOne) {
+  PictureSpec spec = specOf(5, 4, 2);
+  auto rowsWith = [&](double below) {
+    Sampler sampler(spec, kSeed, kFrame);
+    SampleId id;
+    Rows rows;
+    std::vector<Color> row;
+    while (!sampler.finished()) {
+      EXPECT_TRUE(sampler.next(id));
+      const double light = id.y == 4 ? below : id.y == 2 ? 1 + 0.1 * id.cell : 1.1;
+      sampler.supply(id, {light, light, light});
+      while (sampler.takeRow(row)) rows.push_back(row);
+    }
+    return rows;
+  };
+  const double mean = 1 + 0.1 * 1.5;  // of the four cells
+  EXPECT_DOUBLE_EQ(rowsWith(5)[2][2].r, mean);
+  EXPECT_NE(rowsWith(1.1)[2][2].r, rowsWith(5)[2][2].r);
+}
+
+TEST(Sampler, CountsWhatTheRuleAskedForWhateverRanAhead) {
+  const PictureSpec spec = specOf(37, 29, 3);
+  const std::uint64_t refined = reference(spec).refined, border = 2 * 37 + 2 * 27, inside = 35 * 27;
+  const std::uint64_t samples = 9 * border + inside + 35 + 8 * refined;  // 35: the line below
+  SamplerCounts counts;
+  run(spec, 1, oldest, Sampler::Guessing::no, &counts);
+  EXPECT_EQ(counts.needed, samples);
+  EXPECT_LE(counts.given, samples);  // the end of the line below may not be waited for
+  EXPECT_GE(counts.given, samples - 35);
+  EXPECT_EQ(counts.supersampled, border + refined);
+  run(spec, 3000, newest, Sampler::Guessing::yes, &counts);
+  EXPECT_EQ(counts.needed, samples);
+  EXPECT_GE(counts.given, samples);
+  EXPECT_LT(counts.given, samples + samples / 2);
+}
+
+TEST(Sampler, GivesEachSampleOnce) {
+  const PictureSpec spec = specOf(20, 20, 3);
+  Sampler sampler(spec, kSeed, kFrame);
+  std::vector<std::uint8_t> seen(20 * 21 * 9);
+  std::vector<Color> row;
+  SampleId id;
+  while (!sampler.finished()) {
+    ASSERT_TRUE(sampler.next(id));
+    EXPECT_EQ(seen[static_cast<std::size_t>((id.y * 20 + id.x) * 9 + id.cell)]++, 0);
+    sampler.supply(id, colorOf(spec, id));
+    while (sampler.takeRow(row)) continue;
+  }
+  EXPECT_FALSE(sampler.next(id));
+  EXPECT_FALSE(sampler.takeRow(row));
+}
+
+TEST(Sampler, IgnoresColoursThatItDidNotAskFor) {
+  const PictureSpec spec = specOf(12, 12, 2);
+  Sampler sampler(spec, kSeed, kFrame);
+  const Color wrong{1e9, 1e9, 1e9};
+  std::vector<Color> row;
+  Rows rows;
+  SampleId id;
+  while (!sampler.finished()) {
+    for (const SampleId& other : {SampleId{-1, 0, 0},
+                                  {0, -1, 0},
+                                  {12, 0, 0},
+                                  {0, 13, 0},
+                                  {0, 0, 4},
+                                  {0, 0, -1},
+                                  {11, 11, 3},
+                                  {2147483647, -2147483647 - 1, 2147483647}})
+      if (other.x != 11 || rows.size() < 2) sampler.supply(other, wrong);
+    ASSERT_TRUE(sampler.next(id));
+    sampler.supply(id, colorOf(spec, id));
+    sampler.supply(id, wrong);
+    while (sampler.takeRow(row)) rows.push_back(row);
+  }
+  EXPECT_TRUE(rows == reference(spec).rows);
+}
+
+TEST(Sampler, HoldsBackRowsUntilFinishedOnesAreTaken) {
+  PictureSpec spec = specOf(1000, 60000, 1);
+  Sampler sampler(spec, kSeed, kFrame);
+  std::vector<SampleId> batch(1000);
+  std::size_t given = 0, n = 0;
+  while ((n = sampler.next(batch)) != 0) {
+    given += n;
+    for (const SampleId& id : std::span(batch).first(n)) sampler.supply(id, kWhite);
+    ASSERT_LT(given, 100000u);
+  }
+  EXPECT_GE(given, 16000u);
+  std::vector<Color> row;
+  ASSERT_TRUE(sampler.takeRow(row));
+  EXPECT_TRUE(row == std::vector<Color>(1000, kWhite));
+  while (sampler.takeRow(row)) continue;
+  EXPECT_GT(sampler.next(batch), 0u);
+}
+
+TEST(Sampler, HasManySamplesToGiveBeforeAnyColourIsKnown) {
+  Sampler sampler(specOf(512, 512, 3), kSeed, kFrame);
+  std::vector<SampleId> batch(10000);
+  EXPECT_EQ(sampler.next(batch), batch.size());
+}
+
+TEST(Sampler, GivesNeighboursTogether) {
+  Sampler sampler(specOf(512, 512, 1), kSeed, kFrame);
+  std::vector<SampleId> block(64);
+  for (int i = 0; i < 100; ++i) {
+    ASSERT_EQ(sampler.next(block), 64u);
+    const auto [left, right] = std::ranges::minmax(block, {}, &SampleId::x);
+    const auto [top, bottom] = std::ranges::minmax(block, {}, &SampleId::y);
+    EXPECT_EQ(right.x - left.x, 7);
+    EXPECT_EQ(bottom.y - top.y, 7);
+  }
+}
+
+TEST(Sampler, EvenLightStaysEven) {
+  for (std::int32_t side = 1; side <= 8; ++side) {
+    PictureSpec spec = specOf(5, 5, side);
+    spec.filter = {side % 2 == 0, 1.8};
+    Sampler sampler(spec, kSeed, kFrame);
+    SampleId id;
+    while (sampler.next(id)) sampler.supply(id, kWhite);
+    std::vector<Color> row;
+    while (sampler.takeRow(row))
+      for (const Color& c : row) EXPECT_EQ(static_cast<float>(c.r), 1.0f);
+    EXPECT_TRUE(sampler.finished());
+  }
+}
+
+TEST(Sampler, RefusesImpossiblePictures) {
+  EXPECT_THROW(Sampler(specOf(0, 5, 3), 0, 0), std::invalid_argument);
+  EXPECT_THROW(Sampler(specOf(5, 5, 0), 0, 0), std::invalid_argument);
+  EXPECT_THROW(Sampler(specOf(5, 5, 9), 0, 0), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace rayshade
