@@ -3,12 +3,13 @@
 #pragma once
 
 #include "rayshade/atmosphere/fog.h"
+#include "rayshade/atmosphere/fog_deck.h"
 #include "rayshade/atmosphere/mist.h"
 #include "rayshade/base/type_list.h"
 
 namespace rayshade {
 
-using AllEffects = TypeList<Fog, Mist>;
+using AllEffects = TypeList<Fog, Mist, FogDeck>;
 using AnyEffect = AllEffects::Variant;
 
 }  // namespace rayshade

@@ -129,7 +129,7 @@ double absoluteChaos(Vec3 p, int octaves) {
 }
 
 Spectrum fractionalSpectrum(double hurst, double lambda, int octaves) {
-  return {std::pow(lambda, -0.5 * (1 + 2 * hurst)), lambda, octaves};
+  return {hurst, lambda, std::pow(lambda, -0.5 * (1 + 2 * hurst)), octaves};
 }
 
 double fractionalMotion(Vec3 p, const Spectrum& spectrum) {

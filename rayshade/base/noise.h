@@ -3,9 +3,12 @@
 // Space is cut into unit cubes.  A hash of a cube's corner gives a value and a gradient; the noise at a point
 // mixes the linear functions of the eight corners with the weights s(f) = f^2 (3 - 2f) of the fractions f.
 // It repeats every 4096 units, lies in about [-1.05, 1.10], has mean 0 and root mean square 0.25, and is not
-// 0 on the lattice. Source: K. Perlin, An Image Synthesizer, SIGGRAPH 1985; sums of octaves: Musgrave, Kolb &
-// Mace, The Synthesis and Rendering of Eroded Fractal Terrains, SIGGRAPH 1989. SPDX-License-Identifier:
-// BSD-3-Clause
+// 0 on the lattice.
+//
+// Sources: Perlin, An Image Synthesizer, SIGGRAPH 1985; for the sums of octaves, Musgrave, Kolb & Mace, The
+// Synthesis and Rendering of Eroded Fractal Terrains, SIGGRAPH 1989.
+//
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include "rayshade/base/vec.h"
@@ -22,13 +25,13 @@ inline constexpr int kMostOctaves = 64;
 double chaos(Vec3 p, int octaves);
 double absoluteChaos(Vec3 p, int octaves);
 
-// Fractional Brownian motion: the sum of omega^i noise(lambda^i p), with lambda the ratio of the frequencies
-// of two octaves and omega that of their amplitudes.
+// Fractional Brownian motion: the sum of omega^i noise(lambda^i p).  lambda is the ratio of the frequencies of
+// two octaves, omega that of their amplitudes.
 struct Spectrum {
-  double omega = 0.5, lambda = 2;
+  double hurst = 0.5;  // its power falls like frequency^-(1 + 2 hurst); 1/2 is that of a random walk
+  double lambda = 2, omega = 0.5;
   int octaves = 1;
 };
-// A power spectrum of f^-(1 + 2 hurst); hurst = 1/2 is that of a random walk.
 Spectrum fractionalSpectrum(double hurst, double lambda, int octaves);
 
 double fractionalMotion(Vec3 p, const Spectrum& spectrum);
@@ -36,7 +39,7 @@ Vec3 vectorFractionalMotion(Vec3 p, const Spectrum& spectrum);
 
 template <class Archive>
 void serialize(Archive& archive, Spectrum& s) {
-  archive(s.omega, s.lambda, s.octaves);
+  archive(s.hurst, s.lambda, s.omega, s.octaves);
 }
 
 }  // namespace rayshade

@@ -15,7 +15,7 @@ struct Checker {
   Surface odd;
 
   static constexpr std::string_view keyword = "checker";
-  static constexpr bool mapped = false;
+  static constexpr TextureNeeds needs = TextureNeeds::position;
   static constexpr std::string_view examples[] = {"diffuse 0.1 0.1 0.1"};
 
   static std::optional<Checker> parse(Arguments& in) { return Checker{in.surface()}; }

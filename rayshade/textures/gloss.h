@@ -1,0 +1,41 @@
+// A normal that differs from sample to sample, so that mirrors blur.
+//
+//   gloss g                       1: a perfect mirror; 0: deviations up to 45 degrees along each side
+//
+// The deviation is uniform in a square upright on the normal; each sample of a pixel takes its own part of it.
+// Random also without jitter, as in rayshade.
+//
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "rayshade/textures/texture.h"
+
+namespace rayshade {
+
+struct Gloss {
+  double glossiness = 1;
+
+  static constexpr std::string_view keyword = "gloss";
+  static constexpr TextureNeeds needs = TextureNeeds::position;
+  static constexpr std::string_view examples[] = {"0.95"};
+
+  static std::optional<Gloss> parse(Arguments& in) { return Gloss{in.number()}; }
+
+  void apply(TextureHit& hit) const {
+    const int column = hit.sample % hit.side, row = hit.sample / hit.side % hit.side;
+    // In the sample's part of [-1, 1).
+    auto deviation = [&hit](int part, Dimension dimension) {
+      return 2 * (part + uniform(hit.key, dimension, hit.turn)) / hit.side - 1;
+    };
+    const Basis basis = basisAround(hit.normal);
+    hit.normal = bend(hit.normal, (1 - glossiness) * (deviation(column, Dimension::glossX) * basis.first +
+                                                      deviation(row, Dimension::glossY) * basis.second));
+  }
+};
+
+template <class Archive>
+void serialize(Archive& archive, Gloss& g) {
+  archive(g.glossiness);
+}
+
+}  // namespace rayshade
