@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rayshade/shapes/torus.h"
+
+#include <numbers>
+
+#include "rayshade/base/transform.h"
+
+namespace rayshade {
+namespace {
+
+// The axes of rayshade's canonical torus, in object space; unit vectors at right angles.
+Matrix axesOf(const Torus& torus) { return alongAxis({}, torus.axis, 1, 1).forward; }
+Vec3 toCanonical(const Matrix& axes, Vec3 v) { return {dot(v, axes.x), dot(v, axes.y), dot(v, axes.z)}; }
+
+// A line through canonical space in units of about the size of the torus, x = 0 at the point nearest to the
+// centre.
+struct Line {
+  Vec3 foot, direction;
+  double swept, tube;
+};
+
+Quartic quarticAlong(const Line& line) {
+  const auto& [m, d, swept, tube] = line;
+  const double rho = std::sqrt(m.x * m.x + m.y * m.y);
+  const double inner = (rho - swept) * (rho - swept) + m.z * m.z - tube * tube;
+  const double outer = (rho + swept) * (rho + swept) + m.z * m.z - tube * tube;
+  const double md = dot(m, d);  // zero but for rounding
+  const double k = dot(m, m) + swept * swept - tube * tube;
+  const double four = 4 * swept * swept;
+  return {inner * outer, 4 * md * k - 2 * four * (m.x * d.x + m.y * d.y),
+          4 * md * md + 2 * k - four * (d.x * d.x + d.y * d.y), 4 * md, 1};
+}
+
+// How far the point at x is from the surface, and how that changes with x; squares, as in the file header.
+struct Residual {
+  double value, slope;
+};
+Residual residualAt(const Line& line, double x) {
+  const Vec3 p = line.foot + x * line.direction, d = line.direction;
+  const double rho = std::sqrt(p.x * p.x + p.y * p.y);
+  const double rest = p.z * p.z - line.tube * line.tube;
+  const double near = rho - line.swept, far = rho + line.swept;
+  const double side = std::abs(near * near + rest) <= std::abs(far * far + rest) ? near : far;
+  const double widening = rho > 0 ? (p.x * d.x + p.y * d.y) / rho : 0;
+  return {side * side + rest, 2 * (side * widening + p.z * d.z)};
+}
+
+// Newton steps in the accurate form, as long as they help and stay nearer to this root than to its
+// neighbours.
+double improved(const Line& line, double x, double low, double high) {
+  Residual at = residualAt(line, x);
+  for (int step = 0; step < 3; ++step) {
+    const double next = x - at.value / at.slope;
+    if (!(next > low && next < high)) break;
+    const Residual there = residualAt(line, next);
+    if (!(std::abs(there.value) < std::abs(at.value))) break;
+    x = next;
+    at = there;
+  }
+  return x;
+}
+
+}  // namespace
+
+std::optional<Torus> Torus::parse(Arguments& in) {
+  Torus torus;
+  torus.swept = in.number();
+  torus.tube = in.number();
+  torus.centre = in.vector();
+  torus.axis = in.vector();
+  // differs from rayshade4: no least size, only zero and less are degenerate
+  const bool good = torus.swept > 0 && torus.tube > 0 && std::isfinite(torus.swept + torus.tube) &&
+                    isFinite(torus.centre) && isFinite(torus.axis) && length(torus.axis) > 0;
+  return good ? std::optional(torus) : std::nullopt;
+}
+
+Bounds Torus::bounds() const {
+  const Vec3 a = normalize(axis);
+  const Vec3 reach{swept * std::hypot(a.y, a.z) + tube, swept * std::hypot(a.x, a.z) + tube,
+                   swept * std::hypot(a.x, a.y) + tube};
+  return {centre - reach, centre + reach};
+}
+
+double Torus::intersect(const LocalRay& ray, double tMin) const {
+  const double unit = std::ldexp(1.0, std::ilogb(swept + tube));
+  const Vec3 start = ray.origin - centre;
+  const double tFoot = -dot(start, ray.direction);
+  const Vec3 foot = (start + tFoot * ray.direction) / unit;
+  // Only the stretch inside of a sphere around the torus, a little too large so that no root lies at its end.
+  const double reach = 1.0001 * (swept + tube) / unit;
+  const double quarter = reach * reach - dot(foot, foot);
+  if (!(quarter >= 0)) return kNoHit;
+  const double half = std::sqrt(quarter);
+
+  const Matrix axes = axesOf(*this);
+  const Line line{toCanonical(axes, foot), toCanonical(axes, ray.direction), swept / unit, tube / unit};
+  const Roots roots = rootsBetween(quarticAlong(line), -half, half);
+  for (std::size_t i = 0; i < roots.count; ++i) {
+    const double x = roots.at[i];
+    const double low = i > 0 ? (roots.at[i - 1] + x) / 2 : -half;
+    const double high = i + 1 < roots.count ? (x + roots.at[i + 1]) / 2 : half;
+    const double t = tFoot + unit * improved(line, x, low, high);
+    if (t > tMin) return t;
+  }
+  return kNoHit;
+}
+
+ShapePoint Torus::pointAt(const LocalRay& ray, double t) const {
+  const Matrix axes = axesOf(*this);
+  const Vec3 q = toCanonical(axes, ray.origin + t * ray.direction - centre);
+  const double rho = std::hypot(q.x, q.y);
+  const Vec3 outward = rho > 0 ? Vec3{q.x / rho, q.y / rho, 0} : Vec3{1, 0, 0};
+  // The nearest point of the swept circle; on the inner sheet of a spindle torus the farthest one counts.
+  const double near = std::hypot(rho - swept, q.z), far = std::hypot(rho + swept, q.z);
+  const bool innerSheet = std::abs(far - tube) < std::abs(near - tube);
+  const Vec3 circle = (innerSheet ? -swept : swept) * outward;
+  Vec3 fromCircle = normalize(q - circle);
+  if (fromCircle == Vec3{}) fromCircle = outward;
+  const Vec3 onSurface = circle + tube * fromCircle;
+  // Inside of the inner sheet the ray is outside of the solid, so the normal points there.
+  const Vec3 normal = normalize(mapVector(axes, innerSheet ? -fromCircle : fromCircle));
+  return {mapPoint(axes, onSurface) + centre,
+          normal,
+          normal,
+          {},
+          2 * kRounding * (maxAbs(centre) + swept + tube)};
+}
+
+// u around the axis, v around the tube, 0 where the tube is nearest to the axis.
+// differs from rayshade4: dpdv is not taken through the transform of the torus twice.
+SurfaceCoordinates Torus::coordinates(const ShapePoint& at, Vec3 position) const {
+  constexpr double kTurn = 2 * std::numbers::pi;
+  const Matrix axes = axesOf(*this);
+  const Vec3 q = toCanonical(axes, position - centre);
+  const double around = std::atan2(q.y, q.x) / kTurn;
+  const double v = std::acos(std::clamp((swept - std::hypot(q.x, q.y)) / tube, -1.0, 1.0)) / kTurn;
+  SurfaceCoordinates c;
+  c.u = around < 0 ? around + 1 : around;
+  c.v = q.z > 0 ? 1 - v : v;
+  c.dpdu = normalize(mapVector(axes, {-q.y, q.x, 0}));
+  if (c.dpdu == Vec3{}) c.dpdu = axes.y;
+  c.dpdv = normalize(cross(at.geometricNormal, c.dpdu));
+  return c;
+}
+
+}  // namespace rayshade

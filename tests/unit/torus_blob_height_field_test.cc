@@ -1,0 +1,395 @@
+// Torus, blob and height field: known crossings, far origins, the way out from inside, and bad files.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+
+#include "rayshade/shapes/blob.h"
+#include "rayshade/shapes/height_field.h"
+#include "rayshade/shapes/torus.h"
+#include "tests/support/text_arguments.h"
+
+namespace rayshade {
+namespace {
+
+static_assert(Shape<Torus> && Shape<Blob> && Shape<HeightField>);
+
+constexpr double kBeforeAll = -1e300;
+
+LocalRay rayFrom(Vec3 origin, Vec3 direction) { return {origin, normalize(direction), 1}; }
+
+template <class S>
+std::vector<double> crossings(const S& shape, const LocalRay& ray, double tMin = kBeforeAll) {
+  std::vector<double> all;
+  for (double t = shape.intersect(ray, tMin); t != kNoHit && all.size() < 100; t = shape.intersect(ray, t))
+    all.push_back(t);
+  return all;
+}
+
+template <class S>
+std::optional<S> parsed(std::string_view text) {
+  TextArguments arguments(text);
+  return S::parse(arguments);
+}
+
+void expectNear(const std::vector<double>& found, const std::vector<double>& expected, double error) {
+  ASSERT_EQ(found.size(), expected.size());
+  for (std::size_t i = 0; i < found.size(); ++i) EXPECT_NEAR(found[i], expected[i], error);
+}
+
+constexpr Torus kRing{1, 0.25, {}, {0, 0, 1}};
+
+TEST(Torus, lineThroughTheMiddleCrossesFourTimes) {
+  expectNear(crossings(kRing, rayFrom({-5, 0, 0}, {1, 0, 0})), {3.75, 4.25, 5.75, 6.25}, 1e-14);
+}
+
+TEST(Torus, lineAcrossTheTopTouchesTwice) {
+  expectNear(crossings(kRing, rayFrom({-5, 0, 0.25}, {1, 0, 0})), {4, 6}, 1e-7);
+}
+
+TEST(Torus, lineThroughTheHoleMisses) {
+  EXPECT_TRUE(crossings(kRing, rayFrom({0, 0, -5}, {0, 0, 1})).empty());
+  EXPECT_TRUE(crossings(kRing, rayFrom({0.5, 0, -5}, {0, 0.01, 1})).empty());
+}
+
+TEST(Torus, thinTubeFromFarAway) {
+  const Torus thin{1, 0.01, {}, {0, 0, 1}};
+  for (const double distance : {500.0, 5000.0, 50000.0}) {
+    const double z = 0.006, half = 0.008;  // 0.006^2 + 0.008^2 = 0.01^2
+    expectNear(crossings(thin, rayFrom({-distance, 0, z}, {1, 0, 0})),
+               {distance - 1 - half, distance - 1 + half, distance + 1 - half, distance + 1 + half},
+               1e-5 * 0.01);
+  }
+}
+
+TEST(Torus, spindleShowsItsInnerSheetWithNormalsIntoIt) {
+  const Torus spindle{0.5, 1, {}, {0, 0, 1}};
+  const LocalRay ray = rayFrom({-5, 0, 0}, {1, 0, 0});
+  expectNear(crossings(spindle, ray), {3.5, 4.5, 5.5, 6.5}, 1e-13);
+  EXPECT_NEAR(spindle.pointAt(ray, 3.5).geometricNormal.x, -1, 1e-14);
+  EXPECT_NEAR(spindle.pointAt(ray, 4.5).geometricNormal.x, 1, 1e-14);
+  EXPECT_NEAR(spindle.pointAt(ray, 5.5).geometricNormal.x, -1, 1e-14);
+}
+
+TEST(Torus, boundsAreTight) {
+  const Bounds flat = Torus{1, 0.25, {1, 2, 3}, {0, 0, -7}}.bounds();
+  EXPECT_NEAR(flat.low.x, -0.25, 1e-15);
+  EXPECT_NEAR(flat.high.y, 3.25, 1e-15);
+  EXPECT_NEAR(flat.high.z, 3.25, 1e-15);
+  const Bounds oblique = Torus{1, 0.25, {}, {1, 1, 0}}.bounds();
+  EXPECT_NEAR(oblique.high.x, std::sqrt(0.5) + 0.25, 1e-15);
+  EXPECT_NEAR(oblique.high.z, 1.25, 1e-15);
+}
+
+TEST(Torus, vIsZeroInsideAndGoesRoundTheTube) {
+  auto at = [](Vec3 p) {
+    const LocalRay ray = rayFrom(p, {0, 1, 0});
+    const ShapePoint point = kRing.pointAt(ray, 0);
+    return kRing.coordinates(point, point.position);
+  };
+  EXPECT_NEAR(at({0.75, 0, 0}).v, 0, 1e-7);
+  EXPECT_NEAR(at({1, 0, -0.25}).v, 0.25, 1e-12);
+  EXPECT_NEAR(at({1.25, 0, 0}).v, 0.5, 1e-7);
+  EXPECT_NEAR(at({1, 0, 0.25}).v, 0.75, 1e-12);
+  EXPECT_NEAR(at({0, 1.25, 0}).u, 0.25, 1e-12);
+  EXPECT_NEAR(at({0, -1.25, 0}).u, 0.75, 1e-12);
+  EXPECT_NEAR(at({1.25, 0, 0}).dpdu.y, 1, 1e-12);
+  EXPECT_NEAR(at({1.25, 0, 0}).dpdv.z, 1, 1e-12);
+}
+
+TEST(Torus, degenerateOnesAreDropped) {
+  EXPECT_TRUE(parsed<Torus>("1 0.25 0 0 0 0 0 1"));
+  EXPECT_TRUE(parsed<Torus>("1e-9 1e-12 0 0 0 0 0 1e-20"));
+  EXPECT_FALSE(parsed<Torus>("1 0  0 0 0 0 0 1"));
+  EXPECT_FALSE(parsed<Torus>("0 1  0 0 0 0 0 1"));
+  EXPECT_FALSE(parsed<Torus>("-1 1  0 0 0 0 0 1"));
+  EXPECT_FALSE(parsed<Torus>("1 1  0 0 0 0 0 0"));
+  EXPECT_FALSE(parsed<Torus>("1 inf  0 0 0 0 0 1"));
+}
+
+// One ball of radius 1: (1 - d^2)^2 = 1/4 at d = sqrt(1/2).
+const Blob kBall{0.25, {{{}, 1, 1}}};
+const double kSkin = std::sqrt(0.5);
+
+TEST(Blob, oneBallIsASphere) {
+  expectNear(crossings(kBall, rayFrom({-5, 0, 0}, {1, 0, 0})), {5 - kSkin, 5 + kSkin}, 1e-14);
+  const double half = std::sqrt(kSkin * kSkin - 0.09);
+  expectNear(crossings(kBall, rayFrom({-5, 0.3, 0}, {1, 0, 0})), {5 - half, 5 + half}, 1e-14);
+  EXPECT_TRUE(crossings(kBall, rayFrom({-5, 0.71, 0}, {1, 0, 0})).empty());
+  const LocalRay ray = rayFrom({-5, 0, 0}, {1, 0, 0});
+  EXPECT_NEAR(kBall.pointAt(ray, 5 - kSkin).geometricNormal.x, -1, 1e-15);
+}
+
+TEST(Blob, aBallThatJustReachesTheThresholdIsTouchedOnce) {
+  const Blob point{1, {{{}, 1, 1}}};
+  expectNear(crossings(point, rayFrom({-5, 0, 0}, {1, 0, 0})), {5}, 1e-7);
+}
+
+TEST(Blob, ballsInARowMergeAtOneThresholdAndNotAtAnother) {
+  const std::vector<Metaball> balls{{{-0.5, 0, 0}, 1, 1}, {{0.5, 0, 0}, 1, 1}};
+  // In the middle both give (1 - 1/4)^2 = 0.5625.
+  EXPECT_EQ(crossings(Blob{1.1, balls}, rayFrom({-5, 0, 0}, {1, 0, 0})).size(), 2u);
+  EXPECT_EQ(crossings(Blob{1.13, balls}, rayFrom({-5, 0, 0}, {1, 0, 0})).size(), 0u);
+  const std::vector<Metaball> apart{{{-0.7, 0, 0}, 1, 1}, {{0.7, 0, 0}, 1, 1}};
+  EXPECT_EQ(crossings(Blob{0.5, apart}, rayFrom({-5, 0, 0}, {1, 0, 0})).size(), 2u);
+  EXPECT_EQ(crossings(Blob{0.6, apart}, rayFrom({-5, 0, 0}, {1, 0, 0})).size(), 4u);
+}
+
+TEST(Blob, aRayThatGoesInFindsTheWayOut) {
+  for (int i = 0; i < 500; ++i) {
+    const LocalRay arriving = rayFrom({-5, -0.6 + 0.0024 * i, 0.1}, {1, 0, 0});
+    const double t = kBall.intersect(arriving, 0);
+    ASSERT_NE(t, kNoHit);
+    const ShapePoint at = kBall.pointAt(arriving, t);
+    const Vec3 inward = normalize({1, 0.3, -0.2});
+    const LocalRay inside{at.position, normalize(inward - 1.5 * at.geometricNormal), 1};
+    const double chord = -2 * dot(at.position, inside.direction);
+    EXPECT_NEAR(kBall.intersect(inside, 1e-12), chord, 1e-13);
+  }
+}
+
+TEST(Blob, sizeMakesNoDifference) {
+  const std::vector<Metaball> balls{
+      {{-0.3, 0.1, 0}, 0.9, 1}, {{0.5, 0, 0.2}, 0.8, 0.7}, {{0, 0.6, 0}, 0.7, 1.2}};
+  const Blob unit{0.4, balls};
+  for (const double scale : {1e7, 1e-7}) {
+    Blob scaled = unit;
+    for (Metaball& ball : scaled.balls) ball = {scale * ball.centre, scale * ball.radius, ball.strength};
+    for (int y = -20; y <= 20; ++y) {
+      for (int x = -20; x <= 20; ++x) {
+        const Vec3 origin{0.061 * x, 0.061 * y, -4};
+        const auto plain = crossings(unit, rayFrom(origin, {0.01, 0.02, 1}));
+        const auto large = crossings(scaled, rayFrom(scale * origin, {0.01, 0.02, 1}));
+        ASSERT_EQ(large.size(), plain.size());
+        for (std::size_t i = 0; i < plain.size(); ++i) EXPECT_NEAR(large[i] / scale, plain[i], 1e-12);
+        if (plain.empty()) continue;
+        // Nothing of what is left behind is met again.
+        const LocalRay ray = rayFrom(scale * origin, {0.01, 0.02, 1});
+        const ShapePoint at = scaled.pointAt(ray, large[0]);
+        const LocalRay away{at.position, at.geometricNormal, 1};
+        const double again = scaled.intersect(away, 4 * at.error);
+        EXPECT_TRUE(again == kNoHit || again > 0.01 * scale);
+      }
+    }
+  }
+}
+
+TEST(Blob, thousandsOfOverlappingBallsAreStillQuick) {
+  Blob many{3000, {}};
+  for (int i = 0; i < 20000; ++i) many.balls.push_back({{1e-5 * i, 0, 0}, 1, 1});
+  EXPECT_EQ(crossings(many, rayFrom({-5, 0.1, 0}, {1, 0, 0})).size(), 2u);
+}
+
+TEST(Blob, degenerateOnesAreDropped) {
+  EXPECT_TRUE(parsed<Blob>("0.5 1 1 0 0 0"));
+  EXPECT_EQ(parsed<Blob>("0.5 1 1 0 0 0 2 3 4 5 6")->balls.size(), 2u);
+  EXPECT_FALSE(parsed<Blob>("0.5 0 1 0 0 0"));
+  EXPECT_FALSE(parsed<Blob>("0.5 1 1 0 0 0  1 0 0 0 0"));
+  EXPECT_FALSE(parsed<Blob>("0 1 1 0 0 0"));
+  EXPECT_FALSE(parsed<Blob>("0.5 1 inf 0 0 0"));
+}
+
+HeightField fieldOf(std::int32_t size, std::vector<float> values) {
+  return {makeHeights(size, std::move(values))};
+}
+
+const LocalRay down(double x, double y) { return {{x, y, 10}, {0, 0, -1}, 1}; }
+
+TEST(HeightField, cellsAreCutFromTheRightToTheUpperCorner) {
+  const HeightField cell =
+      fieldOf(2, {0, 0, 0, 1});  // flat below the diagonal, rising to 1 at (1, 1) above it
+  EXPECT_DOUBLE_EQ(cell.intersect(down(0.25, 0.25), 0), 10);
+  EXPECT_DOUBLE_EQ(cell.intersect(down(0.75, 0.75), 0), 9.5);
+  EXPECT_DOUBLE_EQ(cell.intersect(down(1, 1), 0), 9);
+  EXPECT_EQ(cell.intersect(down(1.001, 0.5), 0), kNoHit);
+  EXPECT_EQ(cell.intersect(down(0.5, 0.5), 20), kNoHit);
+}
+
+TEST(HeightField, normalsPointUpAndCoordinatesAreXAndY) {
+  const HeightField cell = fieldOf(2, {0, 0, 0, 1});
+  const LocalRay up{{0.75, 0.6, -10}, {0, 0, 1}, 1};
+  const ShapePoint at = cell.pointAt(up, cell.intersect(up, 0));
+  EXPECT_NEAR(at.position.z, 0.35, 1e-15);
+  EXPECT_NEAR(at.geometricNormal.x, -1 / std::sqrt(3), 1e-15);
+  EXPECT_NEAR(at.geometricNormal.z, 1 / std::sqrt(3), 1e-15);
+  const SurfaceCoordinates c = cell.coordinates(at, at.position);
+  EXPECT_NEAR(c.u, 0.75, 1e-15);
+  EXPECT_NEAR(c.v, 0.6, 1e-15);
+  EXPECT_NEAR(dot(c.dpdu, at.normal), 0, 1e-15);
+  EXPECT_NEAR(dot(c.dpdv, at.normal), 0, 1e-15);
+}
+
+TEST(HeightField, trianglesThatTouchAHoleVanish) {
+  const HeightField field = fieldOf(3, {0, 0, 0, 0, -1000, 0, 0, 0, std::nanf("")});
+  EXPECT_DOUBLE_EQ(field.intersect(down(0.1, 0.1), 0),
+                   10);  // the triangle at (0, 0) does not touch the middle
+  EXPECT_EQ(field.intersect(down(0.4, 0.4), 0), kNoHit);
+  EXPECT_EQ(field.intersect(down(0.55, 0.55), 0), kNoHit);
+  EXPECT_EQ(field.intersect(down(0.95, 0.95), 0), kNoHit);
+  EXPECT_EQ(field.intersect(down(0.95, 0.1), 0), kNoHit);
+  EXPECT_EQ(field.bounds(), (Bounds{{0, 0, 0}, {1, 1, 0}}));
+}
+
+std::vector<float> bumps(int size) {
+  std::vector<float> values;
+  for (int i = 0; i < size * size; ++i)
+    values.push_back(static_cast<float>(0.1 * std::sin(12.9898 * i) * std::sin(0.37 * (i % size))));
+  return values;
+}
+
+TEST(HeightField, noCracksAlongLinesDiagonalsAndCorners) {
+  const int size = 33;
+  const HeightField field = fieldOf(size, bumps(size));
+  for (const Vec3 direction :
+       {Vec3{0, 0, -1}, Vec3{0.3, 0.2, -1}, Vec3{1, 0.1, -0.6}, Vec3{-0.1, -1, -0.7}}) {
+    for (const double distance : {3.0, 777.7, 1e6}) {
+      // Away from the border, so that the ray comes in above all heights and leaves below.
+      for (int i = 20; i <= 44; ++i) {
+        for (int j = 20; j <= 44; ++j) {
+          // Corners, middles of lines and middles of diagonals, at height 0 or where the surface really is.
+          const Vec3 target{i / 64.0, j / 64.0,
+                            i % 2 + j % 2 == 0
+                                ? field.heights->values[static_cast<std::size_t>(j / 2 * size + i / 2)]
+                                : 0.0};
+          const Vec3 d = normalize(direction);
+          EXPECT_NE(field.intersect({target - distance * d, d, 1}, 0), kNoHit) << i << " " << j;
+        }
+      }
+    }
+  }
+}
+
+TEST(HeightField, aRayThroughASharedEdgeHitsOnce) {
+  const int size = 17;
+  const HeightField field = fieldOf(size, bumps(size));
+  for (int i = 0; i <= 64; ++i) {
+    for (int j = 0; j <= 64; ++j) {
+      const double x = i / 64.0, y = j / 64.0;  // of these, most lie on lines or diagonals
+      EXPECT_EQ(crossings(field, down(x, y)).size(), 1u) << x << " " << y;
+    }
+  }
+}
+
+TEST(HeightField, aRayInThePlaneOfAFlatFieldMisses) {
+  const HeightField flat = fieldOf(3, std::vector<float>(9, 0.5f));
+  EXPECT_EQ(flat.intersect(rayFrom({-1, 0.5, 0.5}, {1, 0, 0}), 0), kNoHit);
+  EXPECT_EQ(flat.intersect(rayFrom({-1, 0.5, 0.5}, {1, 0.1, 0}), 0), kNoHit);
+}
+
+TEST(HeightField, theQuadtreeLosesNothing) {
+  const int size = 14;
+  const HeightField field = fieldOf(size, bumps(size));
+  for (int i = 0; i < 400; ++i) {
+    const double angle = 0.1 * i;
+    const LocalRay ray =
+        rayFrom({0.5 + 2 * std::cos(angle), 0.5 + 2 * std::sin(angle), 0.02 + 0.001 * (i % 50)},
+                {-std::cos(angle + 0.1), -std::sin(angle + 0.1), -0.01});
+    std::vector<double> one = crossings(field, ray), cellByCell;
+    // Each cell alone, as a field of its own in a transformed space.
+    const double cells = size - 1;
+    for (int y = 0; y + 1 < size; ++y) {
+      for (int x = 0; x + 1 < size; ++x) {
+        auto z = [&](int dx, int dy) {
+          return field.heights->values[static_cast<std::size_t>((y + dy) * size + x + dx)];
+        };
+        const HeightField cell = fieldOf(2, {z(0, 0), z(1, 0), z(0, 1), z(1, 1)});
+        Vec3 o = ray.origin, d = ray.direction;
+        o.x = o.x * cells - x, o.y = o.y * cells - y, d.x *= cells, d.y *= cells;
+        const double stretch = length(d);
+        for (const double t : crossings(cell, {o, d / stretch, 1})) cellByCell.push_back(t / stretch);
+      }
+    }
+    std::sort(cellByCell.begin(), cellByCell.end());
+    expectNear(one, cellByCell, 1e-12);
+  }
+}
+
+class HeightFieldFile : public testing::Test {
+ protected:
+  void TearDown() override { std::filesystem::remove(name_); }
+  void write(std::int32_t size, std::size_t heights, std::size_t spareBytes = 0) {
+    std::ofstream file(name_, std::ios::binary);
+    file.write(reinterpret_cast<const char*>(&size), sizeof size);
+    const float height = 0.25f;
+    for (std::size_t i = 0; i < heights; ++i)
+      file.write(reinterpret_cast<const char*>(&height), sizeof height);
+    for (std::size_t i = 0; i < spareBytes; ++i) file.put(0);
+  }
+  std::string failure() {
+    TextArguments arguments(name_);
+    try {
+      HeightField::parse(arguments);
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "none";
+  }
+  const std::string name_ = testing::TempDir() + "height_field_test_" + std::to_string(getpid()) + ".hf";
+};
+
+TEST_F(HeightFieldFile, isReadRowByRow) {
+  const auto field = parsed<HeightField>("tests/support/hills.hf");
+  ASSERT_TRUE(field);
+  EXPECT_EQ(field->heights->size, 9);
+  EXPECT_EQ(field->heights->values.size(), 81u);
+  EXPECT_EQ(field->heights->values[40], -2000);
+  write(3, 9);
+  EXPECT_EQ(failure(), "none");
+}
+
+TEST_F(HeightFieldFile, thatPromisesMoreThanItHoldsIsRefused) {
+  write(30000, 1, 2);
+  EXPECT_EQ(failure(), name_ + ": not enough height-field data");
+  write(0x7fffffff, 1);
+  EXPECT_EQ(failure(), name_ + ": not enough height-field data");
+  write(3, 8, 3);
+  EXPECT_EQ(failure(), name_ + ": not enough height-field data");
+}
+
+TEST_F(HeightFieldFile, thatIsNoFieldIsRefused) {
+  write(1, 1);
+  EXPECT_NE(failure().find(name_), std::string::npos);
+  write(-5, 25);
+  EXPECT_NE(failure().find(name_), std::string::npos);
+  std::filesystem::remove(name_);
+  EXPECT_EQ(failure(), name_ + ": cannot be read as a height field");
+  std::ofstream(name_).close();
+  EXPECT_EQ(failure(), name_ + ": not enough height-field data");
+}
+
+TEST(HeightField, comesBackFromTheWireWithItsQuadtree) {
+  const HeightField field = fieldOf(6, bumps(6));
+  const Bytes bytes = encode(field);
+  const auto back = decode<HeightField>(bytes);
+  ASSERT_TRUE(back);
+  EXPECT_EQ(encode(*back), bytes);
+  EXPECT_EQ(back->bounds(), field.bounds());
+  const LocalRay ray = rayFrom({-1, 0.3, 0.4}, {1, 0.1, -0.3});
+  EXPECT_EQ(back->intersect(ray, 0), field.intersect(ray, 0));
+}
+
+TEST(HeightField, aMessageWithTheWrongNumberOfHeightsIsRefused) {
+  Bytes bytes;
+  Writer writer(bytes);
+  writer(std::int32_t{3}, std::vector<float>(8, 0.0f));
+  EXPECT_FALSE(decode<HeightField>(bytes));
+  EXPECT_EQ(HeightField{}.intersect(down(0.5, 0.5), 0), kNoHit);
+}
+
+TEST(QuarticShapes, raysThatAreNoNumbersHitNothing) {
+  const double nan = std::nan("");
+  for (const LocalRay& ray : {LocalRay{{nan, 0, 0}, {1, 0, 0}, 1}, LocalRay{{0, 0, 0}, {nan, nan, nan}, 1},
+                              LocalRay{{kInfinity, 0, 0}, {1, 0, 0}, 1}}) {
+    EXPECT_EQ(kRing.intersect(ray, 0), kNoHit);
+    EXPECT_EQ(kBall.intersect(ray, 0), kNoHit);
+    EXPECT_EQ(fieldOf(6, bumps(6)).intersect(ray, 0), kNoHit);
+  }
+}
+
+}  // namespace
+}  // namespace rayshade
