@@ -22,10 +22,15 @@ struct ParseOptions {
   std::string preprocessorArguments;  // -P
   bool flipTriangleNormals = false;   // -f: triangles and polygons
   std::function<void(const std::string&)>
-      warn;  // gets complete lines `file:line: warning: ...`; may be empty
+      warn;  // gets complete lines `file:line:column: warning: ...`; may be empty
+  std::function<void(const std::string&)> print;  // gets what `print` statements print; may be empty
 };
 
-// Reads a scene.  Throws SceneError, with every message (at most 20), when it is wrong.
+// Aggregates, names and instances of names may be this deep inside of each other, all levels added up.
+inline constexpr int kDeepestNesting = 1000;
+
+// Reads a scene.  Throws SceneError, with every message (at most 20), when it is wrong; the sink hears of
+// nothing behind the first.  Whether the head makes sense, checkHead() tells (scene/viewing.h).
 SceneHead parseScene(const ParseOptions& options, SceneSink& sink);
 
 // The same from memory; `name` stands for the file in messages.  No preprocessing.
