@@ -17,13 +17,13 @@ OPTIMIZE ?= -O2
 CXXFLAGS := -std=c++20 $(OPTIMIZE) -g1 -Wall -Wextra -Werror -ffp-contract=off -I. $(if $(SAN),-fsanitize=$(SAN) -fno-sanitize-recover=all -fno-omit-frame-pointer) $(EXTRA_CXXFLAGS)
 LDFLAGS := $(if $(SAN),-fsanitize=$(SAN)) $(EXTRA_LDFLAGS)
 
-core_sources := $(filter-out rayshade/main.cc,$(shell find rayshade -name '*.cc'))
+core_sources := $(filter-out %/main.cc,$(shell find rayshade scenes -name '*.cc'))
 core_objects := $(core_sources:%.cc=$(BUILD)/%.o)
 test_sources := $(shell find tests/unit tests/property tests/golden tests/support -name '*.cc' 2>/dev/null)
 test_objects := $(test_sources:%.cc=$(BUILD)/%.o)
 
 .PHONY: all clean format test
-all: $(BIN)/rayshade
+all: $(BIN)/rayshade $(BIN)/spd
 
 $(BUILD)/%.o: %.cc
 	@mkdir -p $(@D)
@@ -36,6 +36,10 @@ $(BUILD)/libcore.a: $(core_objects)
 $(BIN)/rayshade: $(BUILD)/rayshade/main.o $(BUILD)/libcore.a
 	@mkdir -p $(@D)
 	$(CXX) $(LDFLAGS) $^ -lpng -o $@
+
+$(BIN)/spd: $(BUILD)/scenes/spd/main.o $(BUILD)/libcore.a
+	@mkdir -p $(@D)
+	$(CXX) $(LDFLAGS) $^ -o $@
 
 $(BIN)/rayshade-tests: $(test_objects) $(BUILD)/libcore.a
 	@mkdir -p $(@D)
