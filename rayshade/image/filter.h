@@ -6,6 +6,7 @@
 //
 // Cell a + b * side is column a, row b of the square of `width` pixels around the pixel's centre.  The total
 // is 1 up to rounding.  Source: behaviour of rayshade 4.
+//
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 

@@ -2,6 +2,7 @@
 //
 // libpng reports errors by longjmp.  Each call of it sits in a function that has no object with a destructor
 // between setjmp and the jump; the message is kept and thrown from outside.
+//
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rayshade/image/picture.h"
 

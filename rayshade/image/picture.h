@@ -8,6 +8,7 @@
 // black whatever the gamma.  PFM holds the linear floats as they are.
 // Formats: W3C, Portable Network Graphics, 2003; netpbm, ppm(5); Debevec, Portable Float Map, 2001; "generic"
 // is rayshade's `width height` line with RGB bytes after it (mtv).
+//
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 

@@ -2,6 +2,7 @@
 //
 // Plain numbers, as they stand in the scene file or on the command line; pixelArea() turns screen, window and
 // crop into pixels and is where they are checked.
+//
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 

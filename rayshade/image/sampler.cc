@@ -7,8 +7,10 @@
 // one line more so that this holds for the last line too.  The pixels of the last line have all samples
 // anyway, but its crosses reach up to the last line but one, which they may refine.  So the first samples of
 // the extra line can be seen in the picture.  More of its samples cannot: an extra pixel belongs to one cross
-// only, and when it would be refined that cross is full. differs from rayshade4: the extra line gets one
-// sample per pixel at most, and none at its two ends. SPDX-License-Identifier: BSD-3-Clause
+// only, and when it would be refined that cross is full.
+//
+// differs from rayshade4: the extra line gets one sample per pixel at most, and none at its two ends.
+// SPDX-License-Identifier: BSD-3-Clause
 #include "rayshade/image/sampler.h"
 
 #include <algorithm>
@@ -22,8 +24,8 @@ namespace rayshade {
 namespace {
 
 constexpr std::int32_t kBlock = 8;  // pixels: the side of a block of first samples
-constexpr std::int32_t kPixelsAhead =
-    1 << 14;  // held below the first row that is not taken, when rows are short
+// Pixels held below the first row that is not taken, when rows are short.
+constexpr std::int32_t kPixelsAhead = 1 << 14;
 constexpr std::int32_t kRowsAhead = 3 * kBlock;  // at least, however long the rows are
 
 // The cell of a pixel's first sample has a key of its own, apart from those of the cells.

@@ -8,9 +8,10 @@
 // side^2 samples, every other pixel first gets one in a cell chosen at random.  Then line y = 1, 2, .. is
 // swept from left to right, again until a sweep changes nothing: where the cross of five pixels around (x, y)
 // has too much contrast, all five get all of their samples.  A sweep sees what was refined just before, so
-// decisions are taken strictly in this order; only the tracing runs ahead. Source of the contrast test:
-// Mitchell, Generating Antialiased Images at Low Sampling Densities, 1987. SPDX-License-Identifier:
-// BSD-3-Clause
+// decisions are taken strictly in this order; only the tracing runs ahead.
+//
+// Source of the test: Mitchell, Generating Antialiased Images at Low Sampling Densities, 1987.
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <array>
@@ -70,7 +71,7 @@ struct SamplerCounts {
 class Sampler {
  public:
   // Whether pixels that will probably be refined are asked for before that is decided: pays when there are
-  // many samples on the way, a waste when there are few.
+  // many samples on the way (a few percent are traced in vain), needless when they are traced one by one.
   enum class Guessing : bool { no, yes };
 
   // Throws std::invalid_argument when pixelArea(spec) is nothing or there are not 1..8 samples per side.
@@ -92,7 +93,7 @@ class Sampler {
   // The next finished row, from top to bottom.  Ends the use of its samples.
   bool takeRow(std::vector<Color>& row);
 
-  // All rows have been taken; samples still on the way were guesses.
+  // All rows have been taken; samples still on the way are of no use.
   bool finished() const { return firstRow_ == area_.height; }
 
  private:

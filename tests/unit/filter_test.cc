@@ -1,4 +1,5 @@
 // The pixel filter and the cutting out of the window.
+//
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rayshade/image/filter.h"
 

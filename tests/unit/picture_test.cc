@@ -1,4 +1,5 @@
 // Pictures: levels, files and back, and that there is never half a file.
+//
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rayshade/image/picture.h"
 

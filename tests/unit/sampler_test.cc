@@ -1,4 +1,5 @@
 // The sampler: positions and strata, and that its rows are those of the plain rule for any order of supply.
+//
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rayshade/image/sampler.h"
 
