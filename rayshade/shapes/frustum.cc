@@ -55,16 +55,22 @@ double Frustum::intersect(const LocalRay& ray, double tMin) const {
 
 ShapePoint Frustum::pointAt(const LocalRay& ray, double t) const {
   const Vec3 from = ray.origin + t * ray.direction - base;
-  const double z = std::min(std::max(dot(from, axis), 0.0), length);
-  Vec3 radial = from - z * axis;
-  radial = normalize(radial - dot(radial, axis) * axis);
-  const double k = growth();
-  Vec3 normal = normalize(radial - k * axis);
-  if (radial == Vec3{}) {  // on the axis: the apex, which looks along it
-    radial = basisAround(axis).first;
-    normal = k > 0 ? -axis : radial;
+  const double height = dot(from, axis);
+  Vec3 radial = from - height * axis;
+  radial = radial - dot(radial, axis) * axis;
+  const double distance = rayshade::length(radial);
+  // Onto the nearest point of the generator: straight out would move far when the cone is nearly a disc.
+  const double widening = endRadius - radius;
+  const double share =
+      (height * length + (distance - radius) * widening) / (length * length + widening * widening);
+  const double along = std::min(std::max(share, 0.0), 1.0);
+  Vec3 outward = normalize(radial);
+  Vec3 normal = normalize(length * outward - widening * axis);
+  if (outward == Vec3{}) {  // on the axis: the apex, which looks along it
+    outward = basisAround(axis).first;
+    normal = widening > 0 ? -axis : outward;
   }
-  const Vec3 position = base + z * axis + (radius + k * z) * radial;
+  const Vec3 position = base + (along * length) * axis + (radius + along * widening) * outward;
   return {position, normal, normal, {}, kRounding * (maxAbs(base) + length + endRadius)};
 }
 

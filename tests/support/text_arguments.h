@@ -37,6 +37,7 @@ class TextArguments final : public Arguments {
   bool fileNameFollows() override { return at_ < words_.size() && !numberFollows(); }
   std::string fileName() override {
     if (at_ == words_.size()) fail("a file name is missing");
+    namesFile_ = true;
     return words_[at_++];
   }
   Surface surface() override { return defaultSurface(); }
@@ -44,6 +45,7 @@ class TextArguments final : public Arguments {
   [[noreturn]] void fail(const std::string& message) override { throw std::runtime_error(message); }
 
   bool allTaken() const { return at_ == words_.size(); }
+  bool namesFile() const { return namesFile_; }
   const std::vector<std::string>& warnings() const { return warnings_; }
 
  private:
@@ -56,6 +58,7 @@ class TextArguments final : public Arguments {
 
   std::vector<std::string> words_;
   std::size_t at_ = 0;
+  bool namesFile_ = false;
   std::vector<std::string> warnings_;
 };
 
