@@ -1,7 +1,8 @@
 // A scene in the language of Tachyon 0.99.
 //
 // Tachyon has no refraction, no cone and no polygon: glass is merely transparent, a cone becomes a cylinder of the
-// middle radius, a polygon a fan of triangles around its middle.
+// middle radius, a polygon a fan of triangles around its middle.  Its camera is left-handed: the world is mirrored, x to
+// -x, so that the picture is not.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
