@@ -4,24 +4,6 @@
 namespace rayshade {
 namespace {
 
-struct Weights {
-  double a = 0, b = 0, c = 0;  // of the corners, not normalised: all >= 0 or all <= 0 inside
-
-  double sum() const { return a + b + c; }
-  bool inside() const {
-    const bool met = (a >= 0 && b >= 0 && c >= 0) || (a <= 0 && b <= 0 && c <= 0);
-    return met && sum() != 0;  // a zero sum: the ray lies in the plane
-  }
-};
-
-// t where the ray meets the edge from a to b.  The same bits for either direction of the edge, so that the
-// triangles on both sides of it give the same t.
-double depthOnEdge(const ShearedPoint& a, const ShearedPoint& b) {
-  const double x = b.x - a.x, y = b.y - a.y;
-  return std::abs(x) > std::abs(y) ? (a.depth * b.x - b.depth * a.x) / x
-                                   : (a.depth * b.y - b.depth * a.y) / y;
-}
-
 Vec3 scaledEdge(Vec3 from, Vec3 to, int exponent) {
   const Vec3 e = to - from;
   return {std::ldexp(e.x, -exponent), std::ldexp(e.y, -exponent), std::ldexp(e.z, -exponent)};
@@ -66,26 +48,9 @@ Vec3 Triangle::normal() const {
   return n == Vec3{} || !isFinite(n) ? Vec3{0, 0, 1} : n;
 }
 
-double Triangle::intersect(const LocalRay& ray, double tMin) const {
-  return lookAlong(ray, [&](const auto& shear) {
-    const ShearedPoint a = shear(corners[0]), b = shear(corners[1]), c = shear(corners[2]);
-    const Weights w{turn(b, c), turn(c, a), turn(a, b)};
-    if (!w.inside()) return kNoHit;
-    double t;
-    if (const int met = (w.a == 0) + (w.b == 0) + (w.c == 0); met == 1) [[unlikely]] {
-      t = w.a == 0 ? depthOnEdge(b, c) : w.b == 0 ? depthOnEdge(c, a) : depthOnEdge(a, b);
-    } else {
-      const double sum = w.sum();
-      t = w.a / sum * a.depth + w.b / sum * b.depth + w.c / sum * c.depth;
-    }
-    return t > tMin ? t : kNoHit;
-  });
-}
-
 ShapePoint Triangle::pointAt(const LocalRay& ray, double) const {
-  const Weights w = lookAlong(ray, [&](const auto& shear) {
-    const ShearedPoint a = shear(corners[0]), b = shear(corners[1]), c = shear(corners[2]);
-    return Weights{turn(b, c), turn(c, a), turn(a, b)};
+  const EdgeTurns w = lookAlong(ray, [this](const auto& shear) {
+    return EdgeTurns(shear(corners[0]), shear(corners[1]), shear(corners[2]));
   });
   const double sum = w.sum();
   const Vec3 share{w.a / sum, w.b / sum, w.c / sum};

@@ -19,6 +19,29 @@
 
 namespace rayshade {
 
+// How the edges turn around a ray; each is the weight of the corner opposite to it, not yet normalised.
+struct EdgeTurns {
+  double a, b, c;
+
+  EdgeTurns(const ShearedPoint& pa, const ShearedPoint& pb, const ShearedPoint& pc)
+      : a(turn(pb, pc)), b(turn(pc, pa)), c(turn(pa, pb)) {}
+  double sum() const { return a + b + c; }
+  // All on one side, or met.  The signs are hard to predict, so they are joined without branches.
+  bool inside() const {
+    const int negative = (a < 0) | (b < 0) | (c < 0), positive = (a > 0) | (b > 0) | (c > 0);
+    return (negative & positive) == 0;
+  }
+  bool edgeMet() const { return (a == 0) + (b == 0) + (c == 0) == 1; }  // and no corner
+};
+
+// t where the ray meets the edge from a to b.  The same bits for either direction of the edge, so that the
+// triangles on both sides of it give the same t.
+inline double depthOnEdge(const ShearedPoint& a, const ShearedPoint& b) {
+  const double x = b.x - a.x, y = b.y - a.y;
+  return std::abs(x) > std::abs(y) ? (a.depth * b.x - b.depth * a.x) / x
+                                   : (a.depth * b.y - b.depth * a.y) / y;
+}
+
 struct Triangle {
   std::array<Vec3, 3> corners{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}};
 
@@ -38,6 +61,22 @@ struct Triangle {
   Triangle flipped() const { return {{corners[1], corners[0], corners[2]}}; }  // for option -f; u mirrors
 };
 static_assert(sizeof(Triangle) == 72);
+
+inline double Triangle::intersect(const LocalRay& ray, double tMin) const {
+  return lookAlong(ray, [this, tMin](const auto& shear) {
+    const ShearedPoint a = shear(corners[0]), b = shear(corners[1]), c = shear(corners[2]);
+    const EdgeTurns w(a, b, c);
+    const double sum = w.sum();
+    if (!w.inside() || sum == 0) return kNoHit;  // a zero sum: the ray lies in the plane
+    double t;
+    if (w.edgeMet()) [[unlikely]] {
+      t = w.a == 0 ? depthOnEdge(b, c) : w.b == 0 ? depthOnEdge(c, a) : depthOnEdge(a, b);
+    } else {
+      t = w.a / sum * a.depth + w.b / sum * b.depth + w.c / sum * c.depth;
+    }
+    return t > tMin ? t : kNoHit;
+  });
+}
 
 struct PhongTriangle {
   Triangle face;

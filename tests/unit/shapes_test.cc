@@ -334,6 +334,13 @@ TEST(Triangle, C11NoLeakAtAVertexExactlyOnTheNeighboursEdge) {
   }
 }
 
+TEST(Triangle, TheTurnOfAnEdgeHasItsExactSign) {
+  const double e = 0x1p-30;
+  const ShearedPoint a{1 + e, 1}, b{1, 1 - e};  // (1 + e)(1 - e) - 1 = -e^2, and the product rounds to 1
+  EXPECT_EQ(turn(a, b), -e * e);
+  EXPECT_EQ(turn(b, a), e * e);
+  EXPECT_EQ(turn(a, a), 0);
+}
 TEST(Triangle, KnownHitNormalAndCoordinates) {
   const Triangle triangle = made<Triangle>("0 0 0  4 0 0  0 4 0");
   const LocalRay ray{{1, 2, 3}, {0, 0, -1}};
