@@ -126,11 +126,12 @@ PvmLink::~PvmLink() {
       ended = true;
     }
     const double end = now() + kLastOutputSeconds;
-    while (poll() || (ended && now() < end && wait(kLastOutputSeconds / 10))) events_.clear();
+    while (now() < end && (poll() || ended)) wait(ended ? kLastOutputSeconds / 10 : 0);
   } catch (const std::exception&) {  // the daemon is gone: nobody is left to be told
   }
   for (const auto& [task, line] : unfinishedLine_) std::fprintf(stderr, "%s\n", line.c_str());
   if (!lost_) pvm_exit();
+  removeRouteSockets();
 }
 
 int PvmLink::check(int code, const char* what) {
@@ -220,6 +221,7 @@ std::vector<HostInfo> PvmLink::hosts() {
   if (check(pvm_config(&count, &architectures, &list), "config") < 0) return hosts;
   const int own = pvm_tidtohost(number(self_));
   for (int i = 0; i < count; ++i) {
+    if (silentHosts_.contains(list[i].hi_tid)) continue;
     const auto place = list[i].hi_tid == own ? hosts.begin() : hosts.end();
     hosts.insert(place, {list[i].hi_name, list[i].hi_speed});
   }
@@ -239,6 +241,10 @@ void PvmLink::learnHosts() {
 }
 
 Spawned PvmLink::spawn(Role role, const std::string& host) {
+  for (const int daemon : silentHosts_) {
+    if (const auto known = hosts_.find(daemon); known != hosts_.end() && known->second == host)
+      return {kNobody, "host " + host + " does not answer"};  // PVM would wait for it for minutes
+  }
   Command command = command_(role);
   const std::filesystem::path program = command.at(0);
   std::vector<char*> arguments;
@@ -381,11 +387,14 @@ void PvmLink::takeNotice(int tag) {
     if (host == hosts_.end()) return;
     events_.push_back({LinkEvent::Kind::hostExit, kNobody, host->second, {}});
     hosts_.erase(host);
+    silentHosts_.erase(id);
   } else if (const auto peer = peers_.find(TaskId{id}); peer != peers_.end()) {
     if (tag == kRouteGone)
       peer->second.direct = false;
-    else
+    else {
       peer->second.exited = true;
+      silentHosts_.erase(pvm_tidtohost(id));  // its daemon lives
+    }
     showsSignOfDeath(TaskId{id});
   }
 }
@@ -413,6 +422,8 @@ void PvmLink::bury(TaskId task) {
   peer.dead = true;
   peer.early.clear();
   --ending_;
+  // The route ended and no daemon tells of an exit: the machine itself may be gone.
+  if (peer.asked && !peer.exited) silentHosts_.insert(pvm_tidtohost(number(task)));
   if (peer.watched) events_.push_back({LinkEvent::Kind::taskExit, task, {}, {}});
 }
 

@@ -18,6 +18,7 @@
 #include <deque>
 #include <functional>
 #include <map>
+#include <set>
 #include <stdexcept>
 
 #include "pvm/link.h"
@@ -52,7 +53,7 @@ class PvmLink final : public Machine {
   void watch(TaskId task) override;
   double now() const override;
 
-  std::vector<HostInfo> hosts() override;
+  std::vector<HostInfo> hosts() override;                      // without those that do not answer
   Spawned spawn(Role role, const std::string& host) override;  // "": this machine
   void kill(TaskId task) override;
 
@@ -90,7 +91,8 @@ class PvmLink final : public Machine {
   std::function<Command(Role)> command_;
   TaskId self_ = kNobody, parent_ = kNobody;
   std::map<TaskId, Peer> peers_;
-  std::map<int, std::string> hosts_;           // by the id of the daemon
+  std::set<int> silentHosts_;         // daemons of machines that seem to be gone: nothing is asked of them
+  std::map<int, std::string> hosts_;  // by the id of the daemon
   std::map<int, std::string> unfinishedLine_;  // of the output of spawned tasks
   std::deque<LinkEvent> events_;               // not yet told
   int ending_ = 0;                             // peers that show a sign of death and are not buried

@@ -235,6 +235,20 @@ std::string daemonProgram() {
   return "";
 }
 
+void removeRouteSockets() {
+  const std::string prefix = "pvmtmp";  // pvmtmp<process number>.<count>
+  std::error_code ignored;
+  std::filesystem::directory_iterator entry(pvmDirectory(), ignored);
+  for (; entry != std::filesystem::directory_iterator(); entry.increment(ignored)) {
+    const std::string path = entry->path().string(), name = entry->path().filename().string();
+    if (!name.starts_with(prefix) || !mine(path, S_IFSOCK)) continue;
+    const long process = std::strtol(name.c_str() + prefix.size(), nullptr, 10);
+    std::ifstream commandLine("/proc/" + std::to_string(process) + "/cmdline");
+    const bool ended = commandLine.peek() == std::ifstream::traits_type::eof();
+    if (process > 0 && (ended || process == getpid())) unlink(path.c_str());
+  }
+}
+
 std::vector<HostLine> readHostFile(std::istream& in) {
   std::vector<HostLine> hosts;
   std::string defaults;
@@ -384,6 +398,7 @@ void VirtualMachine::halt() {
     daemon_ = 0;
     sigaction(SIGTERM, &before, nullptr);
     removeLeftovers();
+    removeRouteSockets();
     if (!alive)
       pvm_exit();  // libpvm forgets the dead daemon - at once now that no file leads to it, else after 4 s
   }

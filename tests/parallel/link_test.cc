@@ -291,6 +291,14 @@ TEST_F(LinkTest, AMissingHostIsNamedInTheProblem) {
   EXPECT_NE(spawned.problem.find("nosuchhost"), std::string::npos) << spawned.problem;
 }
 
+TEST_F(LinkTest, NoFileStaysAfterRoutesStood) {
+  const TaskId first = worker(), second = worker();
+  ASSERT_TRUE(connected(first) && connected(second));
+  link.reset();
+  machine.halt();
+  EXPECT_TRUE(nothingLeft(machine.directory()));
+}
+
 TEST_F(LinkTest, TheOwnHostIsListedFirst) {
   const auto hosts = link->hosts();
   ASSERT_EQ(hosts.size(), 1u);
