@@ -17,6 +17,8 @@ Vec3 newell(const std::vector<Vec3>& corners, double size) {
 }
 
 // Does the outline wind around the ray, or pass through it?
+// differs from rayshade4: the corners are projected along the ray, not along an axis, so that also polygons that
+// are not quite plane have no holes along the edges they share.
 template <class Shear>
 bool windsAround(const std::vector<Vec3>& corners, const Shear& shear) {
   int winding = 0;
