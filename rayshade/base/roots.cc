@@ -33,7 +33,7 @@ Value valueAt(const Coefficients<N>& c, double x) {
 template <std::size_t N>
 double closeIn(const Coefficients<N>& c, double a, double b, bool negativeAtA) {
   double x = a + (b - a) / 2, step = b - a;
-  // Every second turn halves the bracket or the step: 128 turns cross all the doubles near a root.
+  // Every turn halves the bracket or the Newton step, so this ends long before the 128th.
   for (int turn = 0; turn < 128; ++turn) {
     const Value v = valueAt(c, x);
     if (std::abs(v.value) <= kUnit / 2 * v.size) return x;

@@ -14,7 +14,8 @@ struct Span {
   double radius, strength;
 };
 
-// (t - enter)(leave - t) / radius^2 with the two t told apart (its blossom): not negative for s, t in the span.
+// (t - enter)(leave - t) / radius^2 with the two t told apart (its blossom): not negative for s and t in the
+// span.
 double blossom(const Span& span, double s, double t) {
   const double r = span.radius;
   return 0.5 *
@@ -55,8 +56,8 @@ Quartic powersOf(const Bernstein& c) {
   return {c[0], 4 * d0, 6 * e0, 4 * (e1 - e0), (e2 - e1) - (e1 - e0)};
 }
 
-// Finds the first crossing of the skin beyond tMin, interval by interval from the start of the ray.  Spans and
-// cuts are measured from the foot, tMin and the hit from the origin of the ray.
+// Finds the first crossing of the skin beyond tMin, interval by interval from the start of the ray.  Spans
+// and cuts are measured from the foot, tMin and the hit from the origin of the ray.
 class Search {
  public:
   Search(std::vector<Span> spans, double threshold, double tFoot, double tMin)
@@ -171,6 +172,7 @@ double distanceToSkin(const Field& f) {
 std::optional<Blob> Blob::parse(Arguments& in) {
   Blob blob;
   blob.threshold = in.number();
+  // differs from rayshade4: no least strength or radius, but without a positive threshold there is no skin
   bool good = std::isfinite(blob.threshold) && blob.threshold > 0;
   do {
     Metaball ball;
@@ -193,8 +195,8 @@ Bounds Blob::bounds() const {
   return all;
 }
 
-// differs from rayshade4: a ray that starts on the skin and goes inside finds the far side (the original loses
-// the interval, and with it 61 % of the exits of a single ball).
+// differs from rayshade4: a ray that starts on the skin and goes inside finds the far side (the original
+// loses the interval, and with it 61 % of the exits of a single ball).
 double Blob::intersect(const LocalRay& ray, double tMin) const {
   if (balls.empty()) return kNoHit;
   // All is measured from the point nearest to the first ball, so that a far origin costs accuracy only once.

@@ -1,10 +1,8 @@
 // The torus.
 //
-//   torus swept tube  x y z  ax ay az     a circle of radius `swept` around the centre (x, y, z), in the
-//   plane
-//                                         across the axis (ax, ay, az), thickened to `tube`     [object
-//                                         units]
+//   torus swept tube  x y z  ax ay az                                                         [object units]
 //
+// A circle of radius `swept` around the centre (x, y, z), across the axis (ax, ay, az), thickened to `tube`.
 // With the axis as z and rho^2 = x^2 + y^2: points with (rho - swept)^2 + z^2 = tube^2, or multiplied by the
 // same with +swept and so freed of the root, (p.p + swept^2 - tube^2)^2 = 4 swept^2 rho^2.  Along a ray that
 // is a quartic.  It is set up at the foot of the perpendicular from the centre, so that its coefficients are

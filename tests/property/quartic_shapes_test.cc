@@ -280,7 +280,7 @@ TEST(HeightField, pointsAreOnTheTrianglesAndCrossingsAlternate) {
     EXPECT_EQ(found.size() % 2, 1u) << "from above the heights to below them";
     for (std::size_t k = 0; k < found.size(); ++k) {
       const ShapePoint at = field.pointAt(ray, found[k]);
-      EXPECT_NEAR(at.position.z, heightAt(at.position.x, at.position.y), 1e-15);
+      EXPECT_NEAR(at.position.z, heightAt(at.position.x, at.position.y), 1e-14);
       EXPECT_LT(length(at.position - (ray.origin + found[k] * direction)), 1e-15 * (10 + distance));
       EXPECT_EQ(dot(at.geometricNormal, direction) < 0, k % 2 == 0);
     }

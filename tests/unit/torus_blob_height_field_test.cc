@@ -309,6 +309,30 @@ TEST(HeightField, theQuadtreeLosesNothing) {
   }
 }
 
+TEST(QuarticShapes, scalingByAPowerOfTwoKeepsTheBits) {
+  const Torus torus{0.9, 0.3, {0.1, 0.2, 0.3}, {1, -2, 0.4}};
+  const Blob blob{0.45, {{{-0.5, 0.1, 0}, 0.9, 1}, {{0.4, 0, 0.3}, 0.7, 0.8}}};
+  int hits = 0;
+  for (const double scale : {0x1p-20, 0x1p20}) {
+    const Torus scaledTorus{scale * torus.swept, scale * torus.tube, scale * torus.centre, torus.axis};
+    Blob scaledBlob = blob;
+    for (Metaball& ball : scaledBlob.balls) ball = {scale * ball.centre, scale * ball.radius, ball.strength};
+    for (int i = 0; i < 200; ++i) {
+      const LocalRay ray = rayFrom({0.01 * i - 1, 0.3, -7}, {0, 0.003 * (i % 40) - 0.06, 1});
+      const LocalRay scaledRay{scale * ray.origin, ray.direction, 1};
+      const double tTorus = torus.intersect(ray, 0), tBlob = blob.intersect(ray, 0);
+      EXPECT_EQ(scaledTorus.intersect(scaledRay, 0), scale * tTorus);
+      EXPECT_EQ(scaledBlob.intersect(scaledRay, 0), scale * tBlob);
+      if (tTorus == kNoHit || tBlob == kNoHit) continue;
+      ++hits;
+      EXPECT_EQ(scaledTorus.pointAt(scaledRay, scale * tTorus).position,
+                scale * torus.pointAt(ray, tTorus).position);
+      EXPECT_EQ(scaledBlob.pointAt(scaledRay, scale * tBlob).error, scale * blob.pointAt(ray, tBlob).error);
+    }
+  }
+  EXPECT_GT(hits, 50);
+}
+
 class HeightFieldFile : public testing::Test {
  protected:
   void TearDown() override { std::filesystem::remove(name_); }
