@@ -128,13 +128,14 @@ bool Bvh::traverse(const Vec3& origin, const Vec3& direction, double tMin, const
     if ((here & kLeaf) == 0) {
       const Node& node = nodes_[here];
       const Float4 zero{};
-      Float4 near[3], far[3];
-      for (int axis = 0; axis < 3; ++axis) {
-        near[axis] = (node.plane[ray.nearPlane[axis]] - ray.nearOrigin[axis]) * ray.nearInverse[axis];
-        far[axis] = (node.plane[ray.farPlane[axis]] - ray.farOrigin[axis]) * ray.farInverse[axis];
-      }
-      const Float4 enters = maximum(maximum(maximum(near[0], near[1]), near[2]), zero);
-      const Float4 leaves = minimum(minimum(minimum(far[0], far[1]), far[2]), all(limit));
+      const auto near = [&](int axis) {
+        return (node.plane[ray.nearPlane[axis]] - ray.nearOrigin[axis]) * ray.nearInverse[axis];
+      };
+      const auto far = [&](int axis) {
+        return (node.plane[ray.farPlane[axis]] - ray.farOrigin[axis]) * ray.farInverse[axis];
+      };
+      const Float4 enters = maximum(maximum(near(0), near(1)), maximum(near(2), zero));
+      const Float4 leaves = minimum(minimum(far(0), far(1)), minimum(far(2), all(limit)));
       const Int4 touched = (enters <= leaves) & Int4{1, 2, 4, 8};
       const auto halves = std::bit_cast<std::array<std::uint64_t, 2>>(touched);
       const std::uint64_t either = halves[0] | halves[1];
