@@ -16,24 +16,17 @@ void ArgumentReader::unexpected(std::string_view wanted) const {
   throw Fault{std::string(wanted) + " is expected here, not " + found, token().place};
 }
 
-bool ArgumentReader::acceptSymbol(char symbol) {
-  if (token().kind != Token::Kind::symbol || token().symbol != symbol) return false;
-  tokens_.advance();
-  return true;
+bool ArgumentReader::symbolFollows(char symbol) const {
+  return token().kind == Token::Kind::symbol && token().symbol == symbol;
 }
 
 bool ArgumentReader::numberFollows() {
-  if (token().kind == Token::Kind::number) return true;
-  const char symbol = token().kind == Token::Kind::symbol ? token().symbol : '\0';
-  return symbol == '-' || symbol == '+' || symbol == '(';
+  return token().kind == Token::Kind::number || symbolFollows('-') || symbolFollows('+') ||
+         symbolFollows('(');
 }
 
 double ArgumentReader::number() {
-  if (token().kind == Token::Kind::number) {
-    const double value = token().value;
-    tokens_.advance();
-    return value;
-  }
+  if (!symbolFollows('(')) return signedNumber();
   const TokenPlace place = token().place;
   const Expression value = expression();
   if (value.varies()) throw Fault{"this depends on time: only transforms and variables may", place};
@@ -41,13 +34,17 @@ double ArgumentReader::number() {
 }
 
 Expression ArgumentReader::expression() {
-  if (token().kind == Token::Kind::symbol && token().symbol == '(') return readExpression(tokens_, variables);
-  const bool negative = acceptSymbol('-');
-  if (!negative) acceptSymbol('+');
+  if (symbolFollows('(')) return readExpression(tokens_, variables);
+  return constantExpression(signedNumber());
+}
+
+double ArgumentReader::signedNumber() {
+  const bool negative = symbolFollows('-');
+  if (negative || symbolFollows('+')) tokens_.advance();
   if (token().kind != Token::Kind::number) unexpected("a number");
   const double value = token().value;
   tokens_.advance();
-  return constantExpression(negative ? -value : value);
+  return negative ? -value : value;
 }
 
 std::string ArgumentReader::fileName() {

@@ -2,7 +2,8 @@
 //
 // Shapes, textures, lights and effects see it as Arguments; the statements of the language use the rest, too.
 // Everything that is wrong leaves as a Fault; a fault found by a type itself (a light without direction) is
-// put at the keyword that began it: see `subject`. SPDX-License-Identifier: BSD-3-Clause
+// put at the keyword that began it: see `subject`.
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <functional>
@@ -54,7 +55,8 @@ class ArgumentReader final : public Arguments {
   Variables variables;
 
  private:
-  bool acceptSymbol(char symbol);
+  bool symbolFollows(char symbol) const;
+  double signedNumber();
   Surface components(Surface base);  // any number of components, changing a surface
   SurfaceId idOf(std::string_view name, const TokenPlace& place, SceneSink& sink);
   SurfaceId changed(SurfaceId id, SceneSink& sink);

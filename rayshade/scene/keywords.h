@@ -3,7 +3,8 @@
 // Every word here is reserved: nothing in a scene can be named so.  The words that make a shape, a texture, a
 // light or an atmospheric effect come from their closed lists, so that a new type needs no edit here; Keyword
 // then says the position in the list.  Words that only the types themselves ask for (through
-// Arguments::accept) are `reserved`. SPDX-License-Identifier: BSD-3-Clause
+// Arguments::accept) are `reserved`.
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <cstdint>

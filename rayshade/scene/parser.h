@@ -2,7 +2,8 @@
 //
 // parseScene() hands the items to a sink one by one and keeps names, surfaces and variables only, so a scene
 // of any size is read in bounded memory.  The numbers of the items follow the order of the file: parsing the
-// same text twice gives the same numbers. SPDX-License-Identifier: BSD-3-Clause
+// same text twice gives the same numbers.
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <functional>

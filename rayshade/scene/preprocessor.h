@@ -6,7 +6,8 @@
 // read on, and when its messages flood us, as those of files that include themselves do.
 //
 // Standard input is read twice, as a file is: when it is a pipe, a temporary copy without a name takes its
-// place. SPDX-License-Identifier: BSD-3-Clause
+// place.
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <sys/types.h>

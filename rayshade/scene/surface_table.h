@@ -1,7 +1,8 @@
 // The surfaces of a scene: what their names mean, and their numbers.
 //
 // A surface gets a number when an object is bound to it for the first time; equal surfaces have one number,
-// however often and under whatever names they are used. SPDX-License-Identifier: BSD-3-Clause
+// however often and under whatever names they are used.
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <string>

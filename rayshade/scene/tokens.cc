@@ -225,8 +225,12 @@ void Tokens::readMarker() {
     file = numberOfFile({p + 1, static_cast<std::size_t>(close - p - 1)});
     p = close < end ? close + 1 : end;
     skipBlanks();
-    if (p < end && *p == '1' && ++includeDepth_ > kDeepestInclude)
-      fault("#include nested more than 60 deep: does the file include itself?", begin, true);
+    if (p < end && *p == '1' && ++includeDepth_ > kDeepestInclude) {
+      TokenPlace directive = placeOf(begin);  // on the line before, as cpp counts; its text is gone
+      directive.lineStart = directive.offset + 1;
+      directive.line -= std::min(directive.line, 1u);
+      throw Fault{"#include nested more than 60 deep: does the file include itself?", directive, true};
+    }
     if (p < end && *p == '2') --includeDepth_;
   }
   file_ = file;
@@ -267,11 +271,11 @@ std::string Tokens::fileName() {
 }
 
 SourcePlace Tokens::describe(const TokenPlace& place) const {
-  return {files_[place.file], place.line, static_cast<std::uint32_t>(place.offset - place.lineStart + 1)};
+  return {files_[place.file], place.line, static_cast<std::uint32_t>(place.offset + 1 - place.lineStart)};
 }
 
 std::string Tokens::excerpt(const TokenPlace& place) {
-  if (place.offset < windowStart_) return "";
+  if (place.offset < std::max(windowStart_, place.lineStart)) return "";
   // The rest of the line may still be unread.
   const std::uint64_t wanted = place.offset + kShown;
   if (const std::uint64_t held = offsetOf(end_); wanted > held)

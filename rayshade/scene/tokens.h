@@ -27,7 +27,7 @@ using ReadText = std::function<std::size_t(char* to, std::size_t most)>;
 // Where something stands, cheap enough for every token.
 struct TokenPlace {
   std::uint64_t offset = 0;     // from the beginning of the text                                     [bytes]
-  std::uint64_t lineStart = 0;  // offset of its line
+  std::uint64_t lineStart = 0;  // offset of its line; behind `offset`: the line as a whole is meant
   std::uint32_t line = 1;
   std::uint32_t file = 0;  // number of a file's name
 };

@@ -134,6 +134,7 @@ bool readViewing(Word word, ArgumentReader& in, SceneHead& head) {
       return true;
     case Word::filter:
       readFilter(in, picture.filter);
+      head.filterGiven = true;
       return true;
     case Word::focaldist:
       camera.focalDistance = in.number();
