@@ -6,7 +6,8 @@
 //
 // A Reader trusts nothing: every count is checked against the bytes that are left before memory is taken, a
 // tag outside of its list or a missing byte makes the reader fail, and a failed reader yields zeros.  Ask
-// ok() at the end; a message is good only if ok() and nothing is left. SPDX-License-Identifier: BSD-3-Clause
+// ok() at the end; a message is good only if ok() and nothing is left.
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <array>
@@ -79,7 +80,7 @@ class Writer {
   template <class... T>
   void put(const std::variant<T...>& choice) {
     put(static_cast<std::uint8_t>(choice.index()));
-    std::visit([this](const auto& value) { put(value); }, choice);
+    std::visit([this](const auto& value) { this->put(value); }, choice);
   }
   template <class T>
   requires std::is_class_v<T>

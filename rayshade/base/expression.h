@@ -58,6 +58,10 @@ double evaluate(const Expression& expression, const Moment& moment);
 inline Expression constantExpression(double value) { return {{{Operation::constant, value}}}; }
 
 template <class Archive>
+void serialize(Archive& archive, Moment& m) {
+  archive(m.time, m.frame);
+}
+template <class Archive>
 void serialize(Archive& archive, Instruction& i) {
   archive(i.operation, i.value);
 }

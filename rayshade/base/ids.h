@@ -13,12 +13,10 @@ enum class ObjectId : std::uint32_t {};      // a placed shape, CSG or instance
 enum class FrameId : std::uint32_t {};       // a step of the naming tree; 0 is the root
 enum class SurfaceId : std::uint32_t {};     // a surface as bound to objects
 enum class DefinitionId : std::uint32_t {};  // objects that are kept together; 0 is the world
-enum class ImageId : std::uint32_t {};       // pixels of a texture, or heights of a height field
 
 inline constexpr FrameId kRootFrame{0};
 inline constexpr DefinitionId kWorld{0};
 inline constexpr SurfaceId kNoSurface{0xffffffffu};
-inline constexpr ImageId kNoImage{0xffffffffu};
 
 template <class Id>
 constexpr std::uint32_t number(Id id) {

@@ -4,7 +4,8 @@
 // Every random number on the way is a pure function of the key and a dimension, so it does not matter in
 // which order, or in which task, the numbers are asked for. Mixing function: the finalizer of SplitMix64
 // (Steele, Lea & Flood, Fast Splittable Pseudorandom Number Generators, 2014); every bit of the input changes
-// every bit of the output with probability close to 1/2. SPDX-License-Identifier: BSD-3-Clause
+// every bit of the output with probability close to 1/2.
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <cstdint>

@@ -2,7 +2,8 @@
 //
 // Row vectors, as in rayshade: a point p goes to p M + t, and of two maps written one after the other the
 // first is applied first.  An Affine carries its inverse, made from the inverses of its parts and never by
-// elimination where a closed form exists. SPDX-License-Identifier: BSD-3-Clause
+// elimination where a closed form exists.
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <optional>

@@ -3,7 +3,8 @@
 // Shapes, textures, lights and atmospheric effects are closed families: the list in each all.h gives the
 // parser its keywords, the wire its tags (the position in the list: append only) and the tests their
 // subjects. Nothing registers itself at start-up, so there is nothing whose order could matter or that a
-// linker could drop. SPDX-License-Identifier: BSD-3-Clause
+// linker could drop.
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <cstddef>
@@ -22,7 +23,7 @@ struct TypeList {
 
   // Calls f.template operator()<T>() for each type, in order.
   template <class F>
-  static void forEach(F&& f) {
+  static constexpr void forEach(F&& f) {
     (f.template operator()<T>(), ...);
   }
 };

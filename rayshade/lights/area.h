@@ -4,7 +4,8 @@
 //   units]
 //
 // All shadow rays of one hit to one area light start at the same place and end on the light: they are the
-// light pyramid of Reinhard & Jansen, section 5. SPDX-License-Identifier: BSD-3-Clause
+// light pyramid of Reinhard & Jansen, section 5.
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include "rayshade/lights/light.h"

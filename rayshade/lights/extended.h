@@ -4,7 +4,8 @@
 //
 // Shading uses the centre; the shadow ray goes to a point of the square [-r, r]^2 across the line of sight,
 // in the stratum of the ray's sample number: along the first axis the stratum's row, along the second its
-// column. SPDX-License-Identifier: BSD-3-Clause
+// column.
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include "rayshade/lights/light.h"

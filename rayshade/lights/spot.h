@@ -5,7 +5,8 @@
 //
 // The factor is cos(theta)^coefficient, theta from the axis, 0 behind; between the two angles it falls off as
 // h^2 (3 - 2 h), h linear in the cosine.  Without the angles rayshade takes both as 0, and the light is
-// black. SPDX-License-Identifier: BSD-3-Clause
+// black.
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <numbers>

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "rayshade/base/color.h"
+#include "rayshade/base/expression.h"
 #include "rayshade/base/random.h"
 #include "rayshade/base/vec.h"
 
@@ -22,11 +23,12 @@ using MediumStack = std::vector<Medium>;  // innermost last; empty: the atmosphe
 
 struct Ray {
   Vec3 origin, direction;       // |direction| = 1                                              [world units]
-  double time = 0;              // for moving objects                                           [scene time]
+  Moment moment;                // for moving objects                                           [scene time]
   int depth = 0;                // 0 from the eye, +1 per reflection or refraction
   int sample = 0;               // sample number inside the pixel: stratum of lights, lens and gloss
   RandomKey key{};              // hash of the path so far
   Color contribution = kWhite;  // weight in the pixel; what weighs too little is not followed
+  double extinct = 1;           // what it brings back is multiplied by extinct^distance
   MediumStack media;
 };
 
@@ -42,7 +44,7 @@ void serialize(Archive& archive, Medium& m) {
 }
 template <class Archive>
 void serialize(Archive& archive, Ray& r) {
-  archive(r.origin, r.direction, r.time, r.depth, r.sample, r.key, r.contribution, r.media);
+  archive(r.origin, r.direction, r.moment, r.depth, r.sample, r.key, r.contribution, r.extinct, r.media);
 }
 
 }  // namespace rayshade

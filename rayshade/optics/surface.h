@@ -1,7 +1,8 @@
 // How a surface treats light: the reflection properties of the rayshade language.
 //
 // Defaults are those of a surface with at least one component given; `defaultSurface` is what an object
-// without any surface gets. SPDX-License-Identifier: BSD-3-Clause
+// without any surface gets.
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include "rayshade/base/color.h"

@@ -61,15 +61,20 @@ struct SceneObject {
   ObjectBody body;
 };
 
-// Pixels of a texture, row by row as in the file, `channels` bytes each.
-struct Image {
-  std::int32_t width = 0, height = 0, channels = 3;
-  std::vector<std::uint8_t> pixels;
+// An item as it is spooled or sent.
+struct SurfaceItem {
+  SurfaceId id{};
+  Surface surface;
 };
+struct FrameItem {
+  FrameId id{};
+  Frame frame;
+};
+using Item = std::variant<SurfaceItem, FrameItem, SceneObject>;
 
 // Takes the items of a scene one by one while it is read.
 //
-// Order: a frame, surface or image comes before what mentions it, with one exception.  The transforms of an
+// Order: a frame or surface comes before what mentions it, with one exception.  The transforms of an
 // aggregate stand behind its `end`, so its frame comes after its members; `settled` is called whenever every
 // frame mentioned so far is known (at the end of each top-level statement).  A definition comes before its
 // first use.
@@ -78,7 +83,6 @@ class SceneSink {
   virtual ~SceneSink() = default;
   virtual void surface(SurfaceId id, const Surface& surface) = 0;
   virtual void frame(FrameId id, Frame frame) = 0;
-  virtual void image(ImageId id, Image image) = 0;
   virtual void object(SceneObject object) = 0;
   virtual void settled() = 0;
 };
@@ -104,14 +108,11 @@ void serialize(Archive& archive, SceneObject& o) {
   archive(o.id, o.container, o.frame, o.surface, o.body);
 }
 template <class Archive>
-void serialize(Archive& archive, Image& i) {
-  archive(i.width, i.height, i.channels, i.pixels);
-  if constexpr (Archive::kReading) {
-    const bool sized =
-        i.width > 0 && i.height > 0 && i.channels > 0 && i.channels <= 4 &&
-        i.pixels.size() == std::size_t(i.width) * std::size_t(i.height) * std::size_t(i.channels);
-    if (!sized) archive.fail();
-  }
+void serialize(Archive& archive, SurfaceItem& i) {
+  archive(i.id, i.surface);
 }
-
+template <class Archive>
+void serialize(Archive& archive, FrameItem& i) {
+  archive(i.id, i.frame);
+}
 }  // namespace rayshade

@@ -55,7 +55,8 @@ struct SceneHead {
   Camera camera;
   PictureSpec picture;
   ReportSpec report;
-  std::string outputFile;  // `outfile`; empty: not said
+  std::string outputFile;    // `outfile`; empty: not said
+  bool filterGiven = false;  // the file has a `filter` statement
 };
 
 template <class Archive>

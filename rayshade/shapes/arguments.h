@@ -1,7 +1,8 @@
 // The arguments of a keyword, as a shape, texture or light asks for them.
 //
 // The parser stands behind it.  A wrong argument never comes back here: the parser reports it with its place
-// and leaves the statement. SPDX-License-Identifier: BSD-3-Clause
+// and leaves the statement.
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <string>

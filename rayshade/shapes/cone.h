@@ -2,7 +2,8 @@
 //
 //   cone baseRadius  bx by bz  topRadius  tx ty tz     one radius may be 0                     [object units]
 //
-// Equal radii make a cylinder.  SPDX-License-Identifier: BSD-3-Clause
+// Equal radii make a cylinder.
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include "rayshade/shapes/frustum.h"

@@ -6,7 +6,8 @@
 //   B^2 - A C = |F e - E f|^2 - |f x e|^2
 // (the product of the planes, Lagrange's identity in one more dimension; B^2 - A C as written cancels for far
 // rays).  The root nearer to the origin comes from the product of both.  The mirror image of the cone beyond
-// its apex has z < 0 and so is never met.  SPDX-License-Identifier: BSD-3-Clause
+// its apex has z < 0 and so is never met.
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include "rayshade/shapes/shape.h"

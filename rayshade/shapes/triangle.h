@@ -8,7 +8,8 @@
 // has no leaks: an edge or a corner that is met exactly is a hit of every triangle there, at the same t.
 //
 // The two are types of their own so that the many flat triangles of a mesh take 72 bytes each.
-// Default coordinates: v = b3, u = b2 / (b1 + b2) with weights b.  SPDX-License-Identifier: BSD-3-Clause
+// Default coordinates: v = b3, u = b2 / (b1 + b2) with weights b.
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <array>

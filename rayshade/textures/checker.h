@@ -4,7 +4,8 @@
 //
 // A coordinate c lies in cell int(c) if c > 0, else in cell int(1 - c); where the three cells add up to an
 // odd number, the surface is replaced.  So 0 itself belongs to cell 1, and a plane at 0 is noisy, as in
-// rayshade. SPDX-License-Identifier: BSD-3-Clause
+// rayshade.
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include "rayshade/textures/texture.h"

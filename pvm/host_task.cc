@@ -1,0 +1,332 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pvm/host_task.h"
+
+#include <algorithm>
+
+namespace rayshade {
+
+HostTask::HostTask(Machine& machine, SceneReader scene, const Setting& setting, const HostOptions& options)
+    : machine_(machine), scene_(std::move(scene)), setting_(setting), options_(options), outbox_(machine) {
+  placeTasks();
+}
+
+// ---- who there is
+
+void HostTask::placeTasks() {
+  const std::vector<HostInfo> hosts = machine_.hosts();
+  if (hosts.empty()) throw HostError("the virtual machine has no hosts");
+  for (const Placement& placement : mapProcesses(hosts, options_.wishes)) {
+    Slave slave;
+    slave.placement = placement;
+    slaves_.push_back(slave);
+  }
+}
+
+HostTask::Slave* HostTask::find(TaskId task) {
+  const auto found = byTask_.find(static_cast<std::int32_t>(task));
+  return found == byTask_.end() ? nullptr : &slaves_[found->second];
+}
+
+template <class M>
+void HostTask::postAll(const M& message) {
+  for (const Slave& slave : slaves_)
+    if (slave.task != kNobody) outbox_.post(slave.task, message);
+}
+
+void HostTask::lost(Slave& slave) {
+  if (slave.task == kNobody) return;
+  byTask_.erase(static_cast<std::int32_t>(slave.task));
+  slave.task = kNobody;
+  slave.hasItems = false;
+  slave.batchesOut = 0;
+  slave.ready = false;
+  someoneDied_ = true;
+}
+
+// Starts what is not there, first where the mapping puts it, then wherever there is a host.  False: nothing was missing.
+bool HostTask::startMissing() {
+  bool missing = false;
+  for (std::size_t i = 0; i < slaves_.size(); ++i) {
+    Slave& slave = slaves_[i];
+    if (slave.task != kNobody) continue;
+    missing = true;
+    if (slave.summary.task != kNobody && ++successions_ > options_.mostSuccessions)
+      throw HostError("tasks keep dying: given up after " + std::to_string(options_.mostSuccessions) + " successors");
+    const std::vector<HostInfo> hosts = machine_.hosts();
+    const auto mapped = mapProcesses(hosts, options_.wishes);
+    const bool stands = std::any_of(hosts.begin(), hosts.end(),
+                                    [&](const HostInfo& h) { return h.name == slave.placement.host; });
+    if (!stands && i < mapped.size()) slave.placement = mapped[i];
+    Spawned spawned = machine_.spawn(slave.placement.role, slave.placement.host);
+    for (std::size_t h = 0; spawned.task == kNobody && h < hosts.size(); ++h) {
+      if (hosts[h].name == slave.placement.host) continue;
+      const std::string problem = spawned.problem;
+      spawned = machine_.spawn(slave.placement.role, hosts[h].name);
+      if (spawned.task == kNobody) spawned.problem = problem;
+      else slave.placement.host = hosts[h].name;
+    }
+    if (spawned.task == kNobody) throw HostError(spawned.problem);
+    slave.task = spawned.task;
+    slave.summary.task = spawned.task;
+    slave.heard = machine_.now();
+    slave.asked = false;
+    byTask_[static_cast<std::int32_t>(spawned.task)] = i;
+    machine_.watch(spawned.task);
+  }
+  return missing;
+}
+
+// ---- an epoch
+
+// Start-up and recovery: brings all tasks into a new epoch, whatever dies meanwhile.
+void HostTask::reconfigure() {
+  const double begin = machine_.now();
+  do {
+    someoneDied_ = false;
+    startMissing();
+    phase_ = Phase::shipping;
+    directory_.voxelTasks.clear();
+    directory_.shadeTasks.clear();
+    for (const Slave& slave : slaves_)
+      (slave.placement.role == Role::voxelTrace ? directory_.voxelTasks : directory_.shadeTasks).push_back(slave.task);
+    ship();
+  } while (someoneDied_ || !configure());
+  phase_ = Phase::rendering;
+  summary_.startSeconds += machine_.now() - begin;
+  // Samples that were on their way are issued again; they are pure, so the same bits come back.
+  summary_.reissued += inFlight_.size();
+  std::vector<std::pair<std::uint64_t, SampleId>> again(inFlight_.begin(), inFlight_.end());
+  std::sort(again.begin(), again.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  for (const auto& [serial, sample] : again) issue(serial, sample);
+}
+
+void HostTask::surveyScene() {
+  const double begin = machine_.now();
+  world_ = {};
+  ObjectStream stream(exposure_, [this](const SceneObject&, const Bounds& bounds, std::span<const FrameItem* const>) {
+    if (bounds.finite()) world_ = join(world_, bounds);
+  });
+  scene_(stream);
+  summary_.objects = stream.objects();
+  summary_.surveySeconds += machine_.now() - begin;
+}
+
+// Reads the scene once for all tasks that have no items.
+void HostTask::ship() {
+  std::set<std::uint32_t> targets;
+  std::uint32_t number = 0;
+  std::vector<std::size_t> slaveOf;
+  for (std::size_t i = 0; i < slaves_.size(); ++i) {
+    if (slaves_[i].placement.role != Role::voxelTrace) continue;
+    if (!slaves_[i].hasItems) {
+      targets.insert(number);
+      outbox_.post(slaves_[i].task, Forget{});
+    }
+    slaveOf.push_back(i);
+    ++number;
+  }
+  if (targets.empty()) return;
+  Shipping* shipping = nullptr;
+  ObjectStream stream(exposure_, [&](const SceneObject& object, const Bounds& bounds,
+                                     std::span<const FrameItem* const> frames) { shipping->object(object, bounds, frames); });
+  Shipping pass(stream, tree_, directory_, targets, [&](std::uint32_t task, Items&& batch) {
+    Slave& slave = slaves_[slaveOf[task]];
+    while (slave.task != kNobody && slave.batchesOut >= Shipping::kBatches) takeEvents(1);
+    if (slave.task == kNobody) return;  // died meanwhile: its successor gets all of it
+    ++slave.batchesOut;
+    outbox_.post(slave.task, batch);
+  });
+  shipping = &pass;
+  scene_(stream);
+  pass.finish();
+  for (std::uint32_t task : targets)
+    if (slaves_[slaveOf[task]].task != kNobody) slaves_[slaveOf[task]].hasItems = true;
+}
+
+// Tells everybody of the new epoch and waits until all are ready; nothing of the new epoch exists before.  False: a
+// task died.
+bool HostTask::configure() {
+  phase_ = Phase::configuring;
+  epoch_ = Epoch{static_cast<std::uint32_t>(epoch_) + 1};
+  ++summary_.epochs;
+  outbox_.beginEpoch(epoch_);
+  std::uint32_t voxelNumber = 0, shadeNumber = 0;
+  for (Slave& slave : slaves_) {
+    slave.ready = false;
+    std::uint32_t& number = slave.placement.role == Role::voxelTrace ? voxelNumber : shadeNumber;
+    outbox_.post(slave.task, Configure{epoch_, setting_, tree_, directory_, number++, exposure_});
+  }
+  outbox_.flush();
+  std::vector<TaskId> peers;
+  for (const Slave& slave : slaves_) peers.push_back(slave.task);
+  machine_.connect(peers);
+  while (!someoneDied_ && !std::all_of(slaves_.begin(), slaves_.end(), [](const Slave& s) { return s.ready; }))
+    takeEvents(1);
+  return !someoneDied_;
+}
+
+// ---- events
+
+void HostTask::handle(const LinkEvent& event) {
+  switch (event.kind) {
+    case LinkEvent::Kind::packet:
+      if (Slave* slave = find(event.task)) {
+        slave->heard = machine_.now();
+        slave->asked = false;
+        receivePacket(*this, event.task, event.bytes, outbox_.traffic);
+      } else {
+        ++outbox_.traffic.stale;  // last words of the dead
+      }
+      break;
+    case LinkEvent::Kind::taskExit:
+      if (Slave* slave = find(event.task)) lost(*slave);
+      break;
+    case LinkEvent::Kind::hostExit:
+      for (Slave& slave : slaves_)
+        if (slave.placement.host == event.host) lost(slave);
+      break;
+    case LinkEvent::Kind::hostJoined: break;  // it is there for the next successor
+  }
+}
+
+// Lets out what has gathered, then takes in what is there; waits up to `patience` seconds for a first event.
+void HostTask::takeEvents(double patience) {
+  outbox_.flush();
+  if (auto first = machine_.wait(patience)) {
+    handle(*first);
+    while (auto event = machine_.poll()) handle(*event);
+  }
+  lookAfterSilent();
+}
+
+void HostTask::lookAfterSilent() {
+  const double now = machine_.now();
+  const double most = phase_ == Phase::rendering ? options_.killAfter : options_.patienceAtStart;
+  for (Slave& slave : slaves_) {
+    if (slave.task == kNobody) continue;
+    const double silence = now - slave.heard;
+    if (silence > options_.pingAfter && !slave.asked) {
+      outbox_.post(slave.task, Ping{});
+      slave.asked = true;
+    }
+    if (silence > most && slave.asked) {
+      machine_.kill(slave.task);
+      lost(slave);
+    }
+  }
+}
+
+void HostTask::on(TaskId from, ItemsTaken) {
+  if (Slave* slave = find(from)) slave->batchesOut = std::max(0, slave->batchesOut - 1);
+}
+
+void HostTask::on(TaskId from, Ready message) {
+  Slave* slave = find(from);
+  if (slave == nullptr || message.epoch != epoch_) return;
+  if (message.arithmetic != arithmeticFingerprint() && !options_.mixedArithmetic)
+    throw HostError("host " + slave->placement.host +
+                    " computes other bits than this one (another processor?): the picture would depend on who traced "
+                    "what; --mixed goes on all the same");
+  if (message.leftOut > 0)
+    throw HostError("task " + std::string(programName(slave->placement.role)) + " on " + slave->placement.host +
+                    " got items that do not fit together: " + std::to_string(message.leftOut));
+  slave->ready = true;
+  slave->summary.objects = message.objects;
+  slave->summary.owned = message.owned;
+}
+
+void HostTask::on(TaskId from, Report message) {
+  if (Slave* slave = find(from)) {
+    slave->summary.report = message;
+    slave->reported = true;
+  }
+}
+
+void HostTask::on(TaskId, Pong) {}
+
+void HostTask::on(TaskId, Answer message) {
+  const auto found = inFlight_.find(message.record);
+  if (found == inFlight_.end() || sampler_ == nullptr) return;
+  sampler_->supply(found->second, message.color);
+  inFlight_.erase(found);
+}
+
+// ---- the picture
+
+void HostTask::issue(std::uint64_t serial, const SampleId& sample) {
+  const SamplePosition position =
+      samplePosition(*picture_, options_.seed, static_cast<std::uint32_t>(exposure_.frame), sample);
+  RayTask task{primaryRay(*view_, position, exposure_.frame), 0, {machine_.self(), serial, 0}};
+  VoxelWalk walk(tree_, task.ray.origin, task.ray.direction);
+  WalkStep<VoxelId> first;
+  walk.next(first);
+  outbox_.post(directory_.ownerOf(first.where), task);
+}
+
+void HostTask::fillWindow() {
+  SampleId sample;
+  while (inFlight_.size() < options_.window && sampler_->next(sample)) {
+    const std::uint64_t serial = serial_++;
+    inFlight_.emplace(serial, sample);
+    issue(serial, sample);
+  }
+  summary_.peakInFlight = std::max<std::uint64_t>(summary_.peakInFlight, inFlight_.size());
+}
+
+void HostTask::renderFrame(const View& view, const PictureSpec& picture, std::int32_t frame,
+                           const std::function<void(const std::vector<Color>&)>& row,
+                           const std::function<void(const Progress&)>& progress) {
+  view_ = &view;
+  picture_ = &picture;
+  exposure_ = exposureOf(picture, frame);
+  surveyScene();
+  const auto voxelTasks = static_cast<std::uint32_t>(
+      std::count_if(slaves_.begin(), slaves_.end(), [](const Slave& s) { return s.placement.role == Role::voxelTrace; }));
+  const std::uint32_t voxels = voxelTasks * std::max(1u, options_.voxelsPerTask);
+  tree_ = buildBinTree(world_, {.voxels = voxels});
+  directory_.voxels.clear();
+  for (std::uint32_t voxel = 0; voxel < voxels; ++voxel) directory_.voxels.push_back(voxel % voxelTasks);
+  for (Slave& slave : slaves_) slave.hasItems = false;
+
+  Sampler sampler(picture, options_.seed, static_cast<std::uint32_t>(frame));
+  sampler_ = &sampler;
+  inFlight_.clear();
+  reconfigure();
+  const double begin = machine_.now();
+  Progress state{0, sampler.area().height, 0};
+  std::vector<Color> colors;
+  while (!sampler.finished()) {
+    while (sampler.takeRow(colors)) {
+      row(colors);
+      ++state.rows;
+    }
+    if (sampler.finished()) break;
+    if (someoneDied_) reconfigure();
+    fillWindow();
+    state.samples = sampler.counts().given;
+    if (progress) progress(state);
+    takeEvents(1);
+  }
+  sampler_ = nullptr;
+  inFlight_.clear();
+  summary_.traceSeconds += machine_.now() - begin;
+}
+
+HostSummary HostTask::finish() {
+  phase_ = Phase::finishing;
+  for (Slave& slave : slaves_) slave.heard = machine_.now();
+  postAll(Finish{});
+  auto missing = [](const Slave& s) { return s.task != kNobody && !s.reported; };
+  const double deadline = machine_.now() + options_.killAfter;
+  while (std::any_of(slaves_.begin(), slaves_.end(), missing) && machine_.now() < deadline) takeEvents(1);
+  for (Slave& slave : slaves_) {
+    if (missing(slave)) machine_.kill(slave.task);
+    slave.summary.placement = slave.placement;
+    summary_.tasks.push_back(slave.summary);
+  }
+  summary_.successions = successions_;
+  summary_.traffic = outbox_.traffic;
+  return summary_;
+}
+
+}  // namespace rayshade

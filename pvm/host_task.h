@@ -1,0 +1,142 @@
+// The host task (Reinhard & Jansen, figure 2).
+//
+// It starts the slave tasks, decides who gets which part of the model and streams it to them, sends every primary ray to
+// the task of the voxel in which it begins, collects the colours, and hands the rows of the picture on as they are
+// finished.  It never holds the model.
+//
+// Work enters here only, at most `window` samples at a time; that bounds every queue and buffer of the system.  When
+// anything dies, successors are started, their share is shipped again and a new epoch begins: old messages are refused
+// and the samples that were on their way are issued again.  Start-up is the same path, with nothing on its way.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <map>
+#include <stdexcept>
+
+#include "pvm/inbox.h"
+#include "pvm/process_mapping.h"
+#include "pvm/shipping.h"
+#include "rayshade/image/sampler.h"
+#include "rayshade/render.h"
+
+namespace rayshade {
+
+struct HostOptions {
+  Wishes wishes;
+  std::uint32_t voxelsPerTask = 1;
+  std::uint32_t window = 4096;      // samples on their way
+  std::uint64_t seed = 0;
+  bool mixedArithmetic = false;     // go on when hosts compute different bits
+  int mostSuccessions = 100;        // deaths after which the render is given up
+  double pingAfter = 10;            // seconds of silence until a task is asked whether it lives
+  double killAfter = 30;            // seconds of silence, asked and no answer, until it counts as hanging
+  double patienceAtStart = 600;     // the same while tasks read their share of the model
+};
+
+// The render cannot go on: a program is missing, too many deaths, hosts that do not fit together.
+class HostError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+struct TaskSummary {
+  Placement placement;
+  TaskId task = kNobody;
+  std::uint64_t objects = 0, owned = 0;
+  Report report;
+};
+
+struct HostSummary {
+  std::vector<TaskSummary> tasks;
+  std::uint64_t objects = 0;       // of the world
+  int successions = 0;             // tasks that died and were replaced
+  std::uint32_t epochs = 0;
+  std::uint64_t peakInFlight = 0;
+  std::uint64_t reissued = 0;      // samples issued again
+  double surveySeconds = 0, startSeconds = 0, traceSeconds = 0;  // start: shipping and building
+  Traffic traffic;
+};
+
+class HostTask {
+ public:
+  using Accepted = TypeList<ItemsTaken, Ready, Report, Pong, Answer>;
+  // Reads the scene once more, from the beginning, into a sink.
+  using SceneReader = std::function<void(SceneSink&)>;
+  struct Progress {
+    std::int32_t rows = 0, allRows = 0;
+    std::uint64_t samples = 0;
+  };
+
+  HostTask(Machine& machine, SceneReader scene, const Setting& setting, const HostOptions& options);
+
+  // Renders a frame of the animation; rows from top to bottom.  Throws HostError, and what the scene reader throws.
+  void renderFrame(const View& view, const PictureSpec& picture, std::int32_t frame,
+                   const std::function<void(const std::vector<Color>&)>& row,
+                   const std::function<void(const Progress&)>& progress = {});
+  // Ends the tasks and gathers their reports.
+  HostSummary finish();
+
+  Epoch epoch() const { return epoch_; }
+  void on(TaskId from, ItemsTaken);
+  void on(TaskId from, Ready message);
+  void on(TaskId from, Report message);
+  void on(TaskId from, Pong);
+  void on(TaskId from, Answer message);
+
+ private:
+  enum class Phase : std::uint8_t { shipping, configuring, rendering, finishing };
+  struct Slave {
+    Placement placement;
+    TaskId task = kNobody;  // kNobody: dead, or not started yet
+    bool hasItems = false;
+    int batchesOut = 0;     // shipped and not answered
+    bool ready = false;
+    double heard = 0;       // when it last said anything
+    bool asked = false;     // a Ping is out
+    TaskSummary summary;
+    bool reported = false;
+  };
+
+  void surveyScene();
+  void placeTasks();
+  void reconfigure();
+  bool startMissing();
+  void ship();
+  bool configure();
+  void issue(std::uint64_t serial, const SampleId& sample);
+  void fillWindow();
+  void handle(const LinkEvent& event);
+  void takeEvents(double patience);
+  void lookAfterSilent();
+  void lost(Slave& slave);
+  Slave* find(TaskId task);
+  template <class M>
+  void postAll(const M& message);
+
+  Machine& machine_;
+  SceneReader scene_;
+  Setting setting_;
+  HostOptions options_;
+  Outbox outbox_;
+  Epoch epoch_{};
+  Phase phase_ = Phase::shipping;
+
+  std::vector<Slave> slaves_;
+  std::map<std::int32_t, std::size_t> byTask_;
+  BinTree tree_;
+  Directory directory_;
+  Exposure exposure_;
+  Bounds world_;
+  bool someoneDied_ = false;
+  int successions_ = 0;
+
+  const View* view_ = nullptr;  // of the frame that is rendered
+  const PictureSpec* picture_ = nullptr;
+  Sampler* sampler_ = nullptr;
+  std::unordered_map<std::uint64_t, SampleId> inFlight_;  // by serial number
+  std::uint64_t serial_ = 0;
+  HostSummary summary_;
+};
+
+}  // namespace rayshade

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pvm/messages.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace rayshade {
+
+bool isComplete(const Directory& directory, const BinTree& tree) {
+  if (directory.voxels.size() != voxelCount(tree) || directory.shadeTasks.empty()) return false;
+  return std::all_of(directory.voxels.begin(), directory.voxels.end(),
+                     [&](std::uint32_t task) { return task < directory.voxelTasks.size(); });
+}
+
+std::uint64_t arithmeticFingerprint() {
+  std::uint64_t hash = 0;
+  auto add = [&hash](double value) { hash = mixBits(hash ^ std::bit_cast<std::uint64_t>(value)); };
+  RandomKey key = sampleKey(1, 2, 3, 4, 5);
+  for (std::uint32_t i = 0; i < 1000; ++i) {
+    const double x = uniform(key, Dimension::jitterX, i), y = 20 * uniform(key, Dimension::jitterY, i);
+    add(std::pow(x, y));
+    add(std::exp(-y));
+    add(std::sin(y));
+    add(std::cos(y));
+    add(std::log(x + 1e-9));
+    add(std::atan2(x, y));
+    add(std::acos(x));
+    add(std::asin(x));
+    add(std::tan(x));
+    add(x * y + x);  // tells a fused multiply-add
+  }
+  return hash;
+}
+
+}  // namespace rayshade

@@ -1,0 +1,210 @@
+// Every message: its fields, and whether it is a fact or work.
+//
+// Facts hold in any epoch; work of another epoch than the receiver's is refused.  A packet is
+//   version u8 | epoch u32 | message*        message = tag u8 (position in AllMessages), fields
+// See docs/wire-format.md.  The tasks and their messages are those of Reinhard & Jansen, figures 2 and 3.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "pvm/link.h"
+#include "rayshade/base/type_list.h"
+#include "rayshade/scene/items.h"
+#include "rayshade/scene/store.h"
+#include "rayshade/shading/combine.h"
+#include "rayshade/space/bintree.h"
+#include "rayshade/trace.h"
+
+namespace rayshade {
+
+enum class Epoch : std::uint32_t {};
+
+// The place where a colour is awaited: a record of a task, and one of its slots.  For the host a record is a sample.
+using RecordId = std::uint64_t;
+using Slot = std::uint32_t;  // a light point, or one of these:
+inline constexpr Slot kTransmittedSlot = 0xfffffffeu;
+inline constexpr Slot kReflectedSlot = 0xffffffffu;
+
+// The self-addressed envelope that travels with every ray.
+struct ReplyTo {
+  TaskId task = kNobody;
+  RecordId record = 0;
+  Slot slot = 0;
+};
+
+// Who is who in an epoch.
+struct Directory {
+  std::vector<TaskId> voxelTasks;     // by the number of the task among voxel tasks
+  std::vector<std::uint32_t> voxels;  // by voxel: which of voxelTasks has it
+  std::vector<TaskId> shadeTasks;
+
+  TaskId ownerOf(VoxelId voxel) const { return voxelTasks[voxels[static_cast<std::size_t>(voxel)]]; }
+};
+// Does every voxel of the tree have an owner?
+bool isComplete(const Directory& directory, const BinTree& tree);
+
+// ---- facts
+
+// Forget all items: another frame begins.
+struct Forget {
+  static constexpr bool isFact = true;
+};
+
+// A batch of a task's share of the model.
+struct Items {
+  static constexpr bool isFact = true;
+  std::vector<Item> items;
+};
+
+// One batch was taken in: there may be another.
+struct ItemsTaken {
+  static constexpr bool isFact = true;
+};
+
+// A new epoch: drop all work, keep the items, answer Ready.
+struct Configure {
+  static constexpr bool isFact = true;
+  Epoch epoch{};
+  Setting setting;
+  BinTree tree;
+  Directory directory;
+  std::uint32_t number = 0;  // of the receiver among the tasks of its role
+  Exposure exposure;
+};
+
+struct Ready {
+  static constexpr bool isFact = true;
+  Epoch epoch{};
+  std::uint64_t arithmetic = 0;  // fingerprint: equal on hosts that compute the same bits
+  std::uint64_t objects = 0;     // that the task holds
+  std::uint64_t owned = 0;       // of those, the ones whose lowest corner lies in its voxels: they add up to the scene
+  std::uint64_t leftOut = 0;     // items that did not fit together
+};
+
+// The end: answer Report and leave.
+struct Finish {
+  static constexpr bool isFact = true;
+};
+
+struct Report {
+  static constexpr bool isFact = true;
+  TraceCounts counts;
+  std::uint64_t combined = 0;  // intersections shaded
+  std::uint64_t messagesIn = 0, messagesOut = 0, packetsIn = 0, packetsOut = 0, bytesIn = 0, bytesOut = 0;
+  std::uint64_t refused = 0;      // malformed or unexpected
+  std::uint64_t stale = 0;        // work of another epoch
+  std::uint64_t peakQueue = 0;    // rays or records waiting
+  std::uint64_t modelBytes = 0;   // its share of the scene, with accelerators
+  std::uint64_t peakMemory = 0;   // of the process, bytes
+  double busySeconds = 0, idleSeconds = 0, cpuSeconds = 0;
+};
+
+struct Ping {
+  static constexpr bool isFact = true;
+};
+struct Pong {
+  static constexpr bool isFact = true;
+};
+
+// ---- work
+
+// Follow this ray from position `step` of its walk.
+struct RayTask {
+  static constexpr bool isFact = false;
+  Ray ray;
+  std::uint32_t step = 0;
+  ReplyTo to;
+};
+
+struct ShadowTask {
+  static constexpr bool isFact = false;
+  ShadowRay shadow;
+  std::uint32_t step = 0;
+  ReplyTo to;
+};
+
+// To a shade task: an intersection whose colours will come, or have come, to `record`; its own colour goes to `to`.
+// Colours that were known at once travel with it.
+struct Expect {
+  static constexpr bool isFact = false;
+  RecordId record = 0;
+  Intersection hit;
+  std::vector<Color> known;  // of the light points whose state is `asked` and `pending` does not name, in order
+  std::vector<Slot> pending; // light points whose colour will come in an Answer, ascending
+  ReplyTo to;
+};
+
+// A colour comes home.
+struct Answer {
+  static constexpr bool isFact = false;
+  RecordId record = 0;
+  Slot slot = 0;
+  Color color;
+};
+
+// Append only: the position is the tag.
+using AllMessages = TypeList<Forget, Items, ItemsTaken, Configure, Ready, Finish, Report, Ping, Pong, RayTask,
+                             ShadowTask, Expect, Answer>;
+
+inline constexpr std::uint8_t kWireVersion = 1;
+
+// Does this machine compute the same bits as another?  A hash over results of the library functions that the pictures
+// depend on: their last bits differ between processors on which glibc chooses different code.
+std::uint64_t arithmeticFingerprint();
+
+template <class Archive>
+void serialize(Archive& archive, ReplyTo& r) {
+  archive(r.task, r.record, r.slot);
+}
+template <class Archive>
+void serialize(Archive& archive, Directory& d) {
+  archive(d.voxelTasks, d.voxels, d.shadeTasks);
+}
+template <class Archive>
+void serialize(Archive&, Forget&) {}
+template <class Archive>
+void serialize(Archive& archive, Items& m) {
+  archive(m.items);
+}
+template <class Archive>
+void serialize(Archive&, ItemsTaken&) {}
+template <class Archive>
+void serialize(Archive& archive, Exposure& e) {
+  archive(e.opens, e.closes, e.frame);
+}
+template <class Archive>
+void serialize(Archive& archive, Configure& m) {
+  archive(m.epoch, m.setting, m.tree, m.directory, m.number, m.exposure);
+}
+template <class Archive>
+void serialize(Archive& archive, Ready& m) {
+  archive(m.epoch, m.arithmetic, m.objects, m.owned, m.leftOut);
+}
+template <class Archive>
+void serialize(Archive&, Finish&) {}
+template <class Archive>
+void serialize(Archive& archive, Report& m) {
+  archive(m.counts, m.combined, m.messagesIn, m.messagesOut, m.packetsIn, m.packetsOut, m.bytesIn, m.bytesOut,
+          m.refused, m.stale, m.peakQueue, m.modelBytes, m.peakMemory, m.busySeconds, m.idleSeconds, m.cpuSeconds);
+}
+template <class Archive>
+void serialize(Archive&, Ping&) {}
+template <class Archive>
+void serialize(Archive&, Pong&) {}
+template <class Archive>
+void serialize(Archive& archive, RayTask& m) {
+  archive(m.ray, m.step, m.to);
+}
+template <class Archive>
+void serialize(Archive& archive, ShadowTask& m) {
+  archive(m.shadow, m.step, m.to);
+}
+template <class Archive>
+void serialize(Archive& archive, Expect& m) {
+  archive(m.record, m.hit, m.known, m.pending, m.to);
+}
+template <class Archive>
+void serialize(Archive& archive, Answer& m) {
+  archive(m.record, m.slot, m.color);
+}
+
+}  // namespace rayshade

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pvm/task_desk.h"
+
+#include <sys/resource.h>
+
+namespace rayshade {
+
+Report TaskDesk::report() const {
+  Report report;
+  const Traffic& t = outbox.traffic;
+  report.messagesIn = t.messagesIn;
+  report.messagesOut = t.messagesOut;
+  report.packetsIn = t.packetsIn;
+  report.packetsOut = t.packetsOut;
+  report.bytesIn = t.bytesIn;
+  report.bytesOut = t.bytesOut;
+  report.refused = t.refused;
+  report.stale = t.stale;
+  report.peakQueue = peakQueue;
+  report.idleSeconds = idleSeconds;
+  report.busySeconds = link.now() - born_ - idleSeconds;
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  auto seconds = [](const timeval& t) { return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec); };
+  report.cpuSeconds = seconds(usage.ru_utime) + seconds(usage.ru_stime);
+  report.peakMemory = static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+  return report;
+}
+
+}  // namespace rayshade

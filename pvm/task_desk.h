@@ -1,0 +1,39 @@
+// What every slave task has: its link, its outbox, its epoch, and what it counts about itself.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "pvm/inbox.h"
+
+namespace rayshade {
+
+class TaskDesk {
+ public:
+  explicit TaskDesk(Link& link) : link(link), outbox(link), born_(link.now()) {}
+
+  Link& link;
+  Outbox outbox;
+  Epoch epoch{};
+  bool finished = false;
+  std::uint64_t peakQueue = 0;
+  double idleSeconds = 0;
+
+  void notePeak(std::uint64_t waiting) { peakQueue = std::max(peakQueue, waiting); }
+
+  // The part of a report that is the same for all tasks.
+  Report report() const;
+
+ private:
+  double born_;
+};
+
+// Hands a link event to a task: packets are decoded; the death of the task's parent, the host, ends it.
+template <class Task>
+void receiveEvent(Task& task, TaskDesk& desk, const LinkEvent& event) {
+  if (event.kind == LinkEvent::Kind::packet) {
+    receivePacket(task, event.task, event.bytes, desk.outbox.traffic);
+  } else if (event.kind == LinkEvent::Kind::taskExit && event.task == desk.link.parent()) {
+    desk.finished = true;
+  }
+}
+
+}  // namespace rayshade

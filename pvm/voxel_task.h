@@ -1,0 +1,69 @@
+// The voxel-trace task (Reinhard & Jansen, figure 3, left).
+//
+// It holds the objects that touch its voxels and traces rays through them.  A ray that leaves without a hit goes to
+// the task of the next voxel; at a hit, secondary rays are spawned and a shade task is told of the intersection, so that
+// it reserves a place for the colours that will come.  Rays that are waiting are taken deepest first and shadow rays
+// before all: the tree of each sample is walked like a stack, which bounds what waits.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+
+#include "pvm/task_desk.h"
+
+namespace rayshade {
+
+class VoxelTask : public VoxelSource {
+ public:
+  using Accepted = TypeList<Forget, Items, Configure, Finish, Ping, RayTask, ShadowTask>;
+
+  explicit VoxelTask(Link& link) : desk_(link) {}
+
+  // The life in event_loop.h.
+  void receive(const LinkEvent& event) { receiveEvent(*this, desk_, event); }
+  bool work(double until);
+  void flush() { desk_.outbox.flush(); }
+  bool finished() const { return desk_.finished; }
+  void noteIdle(double seconds) { desk_.idleSeconds += seconds; }
+
+  Epoch epoch() const { return desk_.epoch; }
+  void on(TaskId from, Forget);
+  void on(TaskId from, Items message);
+  void on(TaskId from, Configure message);
+  void on(TaskId from, Finish);
+  void on(TaskId from, Ping);
+  void on(TaskId from, RayTask task);
+  void on(TaskId from, ShadowTask task);
+
+  const Region* find(VoxelId voxel) const override;
+  std::uint64_t waiting() const { return waitingRays_ + shadows_.size(); }
+
+ private:
+  void buildRegions();
+  void trace(RayTask& task);
+  void trace(ShadowTask& task);
+  void shade(RayTask& task, const Hit& hit);
+  void answer(const ReplyTo& to, Color color);
+  void queue(RayTask task);
+
+  TaskDesk desk_;
+  Setting setting_;
+  std::size_t lightPoints_ = 0;
+  BinTree tree_;
+  Directory directory_;
+  std::uint32_t number_ = 0;
+  Exposure exposure_;
+
+  std::optional<Model> model_{std::in_place};
+  bool itemsAreNew_ = false;
+  std::vector<std::unique_ptr<Region>> regions_;  // by voxel; null: not mine
+  std::uint64_t owned_ = 0;
+
+  std::vector<std::vector<RayTask>> raysByDepth_;
+  std::uint64_t waitingRays_ = 0;
+  std::vector<ShadowTask> shadows_;
+  std::uint64_t serial_ = 0;  // of the next intersection found here
+  TraceCounts counts_;
+};
+
+}  // namespace rayshade

@@ -1,0 +1,77 @@
+// A vector that keeps its first N elements inside itself.
+//
+// Most hits ask a handful of lights; an allocation for each of them would cost more than the answer.
+// For trivially copyable types only.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <type_traits>
+#include <vector>
+
+namespace rayshade {
+
+template <class T, std::size_t N>
+class InlineVector {
+  static_assert(std::is_trivially_copyable_v<T>);
+
+ public:
+  InlineVector() = default;
+  explicit InlineVector(std::size_t size, T value = T{}) { resize(size, value); }
+
+  std::size_t size() const { return size_; }
+  bool empty() const { return size_ == 0; }
+  T* data() { return size_ <= N ? inside_.data() : outside_.data(); }
+  const T* data() const { return size_ <= N ? inside_.data() : outside_.data(); }
+  T* begin() { return data(); }
+  T* end() { return data() + size_; }
+  const T* begin() const { return data(); }
+  const T* end() const { return data() + size_; }
+  T& operator[](std::size_t i) { return data()[i]; }
+  const T& operator[](std::size_t i) const { return data()[i]; }
+
+  void push_back(T value) {
+    if (size_ < N) {
+      inside_[size_] = value;
+    } else {
+      if (size_ == N) outside_.assign(inside_.begin(), inside_.end());
+      outside_.push_back(value);
+    }
+    ++size_;
+  }
+  void resize(std::size_t size, T value = T{}) {
+    clear();
+    if (size <= N) {
+      for (std::size_t i = 0; i < size; ++i) inside_[i] = value;
+    } else {
+      outside_.assign(size, value);
+    }
+    size_ = size;
+  }
+  void clear() {
+    size_ = 0;
+    outside_.clear();
+  }
+
+ private:
+  std::size_t size_ = 0;
+  std::array<T, N> inside_;
+  std::vector<T> outside_;
+};
+
+// On the wire like a vector: a count, checked against the bytes left, and the elements.
+template <class Archive, class T, std::size_t N>
+void serialize(Archive& archive, InlineVector<T, N>& list) {
+  std::vector<T> plain;
+  if constexpr (Archive::kReading) {
+    archive(plain);
+    list.clear();
+    for (const T& element : plain) list.push_back(element);
+  } else {
+    plain.assign(list.begin(), list.end());
+    archive(plain);
+  }
+}
+
+}  // namespace rayshade

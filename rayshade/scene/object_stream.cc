@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rayshade/scene/object_stream.h"
+
+#include <algorithm>
+
+namespace rayshade {
+namespace {
+
+// Spooled items are framed by their size.
+void readItems(Spool& spool, std::uint64_t begin, std::uint64_t end, const std::function<void(const Item&)>& take) {
+  Bytes bytes;
+  for (std::uint64_t at = begin; at < end;) {
+    std::uint32_t size = 0;
+    spool.read(at, std::as_writable_bytes(std::span(&size, 1)));
+    bytes.resize(size);
+    spool.read(at + sizeof size, bytes);
+    at += sizeof size + size;
+    if (const auto item = decode<Item>(bytes)) take(*item);
+  }
+}
+
+// Where a chain of frames, innermost first, takes a point at a moment.
+Affine composed(const std::vector<const FrameItem*>& chain, const Moment& moment) {
+  Affine map;
+  for (const FrameItem* f : chain) map = then(map, chainAt(f->frame.transforms, moment));
+  return map;
+}
+
+}  // namespace
+
+ObjectStream::ObjectStream(const Exposure& exposure, Consumer consumer)
+    : exposure_(exposure), consumer_(std::move(consumer)) {}
+
+void ObjectStream::surface(SurfaceId id, const Surface& surface) { surfaces_.try_emplace(number(id), surface); }
+
+const Surface* ObjectStream::findSurface(SurfaceId id) const {
+  const auto found = surfaces_.find(number(id));
+  return found == surfaces_.end() ? nullptr : &found->second;
+}
+
+void ObjectStream::note(FrameId id) { statement_.mentioned = std::max(statement_.mentioned, number(id)); }
+
+void ObjectStream::spool(const Item& item, Spool& to) {
+  scratch_.clear();
+  Writer writer(scratch_);
+  writer(std::uint32_t{0}, item);
+  const auto size = static_cast<std::uint32_t>(scratch_.size() - sizeof(std::uint32_t));
+  std::memcpy(scratch_.data(), &size, sizeof size);
+  to.append(scratch_);
+}
+
+void ObjectStream::frame(FrameId id, Frame frame) {
+  FrameItem item{id, std::move(frame)};
+  spool(item, statement_.spool);
+  if (number(id) <= statement_.mentioned) statement_.late.emplace(number(id), std::move(item));
+  note(id);
+}
+
+void ObjectStream::object(SceneObject object) {
+  // The common case, a primitive at top level with neither transforms nor textures, needs no spooling.
+  if (object.container == kWorld && object.frame == kRootFrame && statement_.spool.size() == 0 &&
+      std::holds_alternative<AnyShape>(object.body)) {
+    hand(object, nullptr);
+    return;
+  }
+  note(object.frame);
+  if (object.container != kWorld) {
+    auto [definition, isNew] = definitions_.try_emplace(number(object.container));
+    if (isNew) statement_.defined.push_back(object.container);
+  }
+  spool(Item{std::move(object)}, statement_.spool);
+}
+
+Bounds ObjectStream::ownBounds(const SceneObject& object) const {
+  auto boundsOf = [this](DefinitionId id) {
+    const auto found = definitions_.find(number(id));
+    return found == definitions_.end() ? Bounds{} : found->second.bounds;
+  };
+  if (const AnyShape* shape = std::get_if<AnyShape>(&object.body))
+    return std::visit([](const auto& s) { return s.bounds(); }, *shape);
+  if (const Instance* instance = std::get_if<Instance>(&object.body)) return boundsOf(instance->definition);
+  return boundsOf(std::get<Csg>(object.body).operands);
+}
+
+// From the innermost frame outwards.  `own` is the frame that came just before the object.
+std::vector<const FrameItem*> ObjectStream::framesOf(FrameId id, const FrameItem* own) const {
+  std::vector<const FrameItem*> chain;
+  while (id != kRootFrame) {
+    const FrameItem* f = nullptr;
+    if (own != nullptr && own->id == id) {
+      f = own;
+    } else if (const auto found = statement_.late.find(number(id)); found != statement_.late.end()) {
+      f = &found->second;
+    }
+    if (f == nullptr || number(f->frame.parent) >= number(id)) break;
+    chain.push_back(f);
+    id = f->frame.parent;
+  }
+  return chain;
+}
+
+void ObjectStream::hand(const SceneObject& object, const FrameItem* own) {
+  const auto chain = framesOf(object.frame, own);
+  const bool moves = std::any_of(chain.begin(), chain.end(), [](const FrameItem* f) { return f->frame.transforms.moves(); });
+  const Bounds bounds = placedBounds(
+      ownBounds(object), moves, [&](const Moment& moment) { return composed(chain, moment); }, exposure_);
+  if (object.container == kWorld) {
+    ++objects_;
+    std::vector<const FrameItem*> outermostFirst(chain.rbegin(), chain.rend());
+    consumer_(object, bounds, outermostFirst);
+  } else {
+    Bounds& whole = definitions_[number(object.container)].bounds;
+    whole = join(whole, bounds);
+  }
+}
+
+void ObjectStream::settled() {
+  Statement& statement = statement_;
+  if (statement.spool.size() == 0) return;
+  // The members of a definition come before its first use, so one pass in order knows the bounds of what it meets.
+  FrameItem own;
+  bool ownIsSet = false;
+  readItems(statement.spool, 0, statement.spool.size(), [&](const Item& item) {
+    if (const FrameItem* f = std::get_if<FrameItem>(&item)) {
+      own = *f;
+      ownIsSet = true;
+    } else if (const SceneObject* object = std::get_if<SceneObject>(&item)) {
+      hand(*object, ownIsSet ? &own : nullptr);
+    }
+  });
+  // What definitions consist of is kept: their objects, and every frame that one of those can hang on.
+  if (!statement.defined.empty()) {
+    const std::uint64_t begin = definitionSpool_.size();
+    readItems(statement.spool, 0, statement.spool.size(), [&](const Item& item) {
+      const SceneObject* object = std::get_if<SceneObject>(&item);
+      if (object == nullptr || object->container != kWorld) spool(item, definitionSpool_);
+    });
+    for (DefinitionId id : statement.defined)
+      definitions_[number(id)].pieces.emplace_back(begin, definitionSpool_.size() - begin);
+  }
+  statement.spool.clear();
+  statement.late.clear();
+  statement.defined.clear();
+}
+
+void ObjectStream::readDefinition(DefinitionId id, const std::function<void(const Item&)>& take) {
+  const auto found = definitions_.find(number(id));
+  if (found == definitions_.end()) return;
+  for (const auto& [offset, size] : found->second.pieces) {
+    readItems(definitionSpool_, offset, offset + size, [&](const Item& item) {
+      const SceneObject* object = std::get_if<SceneObject>(&item);
+      if (object == nullptr || object->container == id) take(item);
+    });
+  }
+}
+
+}  // namespace rayshade

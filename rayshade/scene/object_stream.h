@@ -1,0 +1,67 @@
+// From a stream of items to a stream of placed objects, in bounded memory.
+//
+// The transforms of an aggregate stand behind its members, so where a member goes is known only at the end of its
+// top-level statement.  Until then the items of the statement are spooled (to disk when they are many); then they are
+// read back and handed on with their bounds.  Definitions stay in a spool, and can be read back as often as they are
+// used.  What is kept in memory: frames that came after their members, surfaces, and an entry per definition.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <map>
+#include <unordered_map>
+
+#include "rayshade/scene/spool.h"
+#include "rayshade/scene/store.h"
+
+namespace rayshade {
+
+class ObjectStream : public SceneSink {
+ public:
+  // Takes an object of the world with its bounds in world space.  `frames` are those between it and the world, in the
+  // order of their numbers.
+  using Consumer =
+      std::function<void(const SceneObject& object, const Bounds& bounds, std::span<const FrameItem* const> frames)>;
+
+  ObjectStream(const Exposure& exposure, Consumer consumer);
+
+  void surface(SurfaceId id, const Surface& surface) override;
+  void frame(FrameId id, Frame frame) override;
+  void object(SceneObject object) override;
+  void settled() override;
+
+  const Surface* findSurface(SurfaceId id) const;
+  // What a definition consists of: frames and objects, frames in any order; other definitions that it uses are
+  // mentioned only.
+  void readDefinition(DefinitionId id, const std::function<void(const Item&)>& item);
+
+  std::uint64_t objects() const { return objects_; }  // of the world
+
+ private:
+  struct Definition {
+    std::vector<std::pair<std::uint64_t, std::uint64_t>> pieces;  // offset and size in definitionSpool_
+    Bounds bounds;
+  };
+  struct Statement {  // the top-level statement that is being read
+    Spool spool;
+    std::map<std::uint32_t, FrameItem> late;  // frames that came after something that mentions them
+    std::uint32_t mentioned = 0;              // the largest number of a frame so far
+    std::vector<DefinitionId> defined;        // in order
+  };
+
+  void note(FrameId id);
+  void spool(const Item& item, Spool& to);
+  Bounds ownBounds(const SceneObject& object) const;
+  std::vector<const FrameItem*> framesOf(FrameId id, const FrameItem* own) const;
+  void hand(const SceneObject& object, const FrameItem* own);
+
+  Exposure exposure_;
+  Consumer consumer_;
+  std::unordered_map<std::uint32_t, Surface> surfaces_;
+  std::unordered_map<std::uint32_t, Definition> definitions_;
+  Spool definitionSpool_;
+  Statement statement_;
+  std::uint64_t objects_ = 0;
+  Bytes scratch_;
+};
+
+}  // namespace rayshade

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rayshade/scene/store.h"
+
+#include <algorithm>
+
+namespace rayshade {
+namespace {
+
+// Whole shapes of one kind: what they hold outside of themselves is theirs to know and small beside this.
+template <class Vectors>
+std::size_t bytesOf(const Vectors& vectors) {
+  return std::apply(
+      [](const auto&... list) {
+        return ((list.capacity() * sizeof(typename std::decay_t<decltype(list)>::value_type)) + ... + 0);
+      },
+      vectors);
+}
+
+}  // namespace
+
+SceneStore::SceneStore() {
+  frames_.emplace_back();  // the root
+  frameIndex_[number(kRootFrame)] = 0;
+  members_[number(kWorld)];
+}
+
+void SceneStore::surface(SurfaceId id, const Surface& surface) {
+  if (surfaceIndex_.try_emplace(number(id), static_cast<SurfaceIndex>(surfaces_.size())).second) {
+    surfaces_.push_back(surface);
+    anyTransparent_ = anyTransparent_ || surface.transparency >= kNegligible;
+  }
+}
+
+void SceneStore::frame(FrameId id, Frame frame) {
+  if (!frameIndex_.try_emplace(number(id), static_cast<FrameIndex>(frames_.size())).second) return;
+  // An aggregate gets its number before its members do: a parent with a larger number would be a circle.
+  if (number(frame.parent) >= number(id)) {
+    frame.parent = kRootFrame;
+    ++leftOut_;
+  }
+  frames_.emplace_back();
+  frames_.back().frame = std::move(frame);
+  frames_.back().parent = kNone;  // until prepare()
+}
+
+void SceneStore::object(SceneObject object) {
+  PlacedObject placed;
+  placed.id = object.id;
+  if (const AnyShape* shape = std::get_if<AnyShape>(&object.body)) {
+    placed.kind = BodyKind{static_cast<std::uint8_t>(shape->index())};
+    std::visit(
+        [&](const auto& s) {
+          auto& list = std::get<std::vector<std::decay_t<decltype(s)>>>(shapes_);
+          placed.body = static_cast<std::uint32_t>(list.size());
+          list.push_back(s);
+        },
+        *shape);
+  } else if (const Instance* instance = std::get_if<Instance>(&object.body)) {
+    placed.kind = kInstanceKind;
+    placed.body = static_cast<std::uint32_t>(instances_.size());
+    instances_.push_back(*instance);
+  } else {
+    placed.kind = kCsgKind;
+    placed.body = static_cast<std::uint32_t>(csgs_.size());
+    csgs_.push_back(std::get<Csg>(object.body));
+  }
+  auto [members, isNew] = members_.try_emplace(number(object.container));
+  if (isNew) definitions_.push_back(object.container);
+  members->second.push_back(static_cast<ObjectIndex>(objects_.size()));
+  objects_.push_back(placed);
+  unplacedFrame_.push_back(object.frame);
+  unplacedSurface_.push_back(object.surface);
+}
+
+// Composes the map of a frame from its own and its parent's; parents first.
+void SceneStore::place(PlacedFrame& frame) {
+  std::vector<PlacedFrame*> pending;
+  for (PlacedFrame* f = &frame; f->parent == kNone;) {
+    const auto parent = frameIndex_.find(number(f->frame.parent));
+    pending.push_back(f);
+    if (parent == frameIndex_.end()) ++leftOut_;
+    f->parent = parent == frameIndex_.end() ? 0 : parent->second;
+    f = &frames_[f->parent];
+  }
+  for (; !pending.empty(); pending.pop_back()) {
+    PlacedFrame& f = *pending.back();
+    const PlacedFrame& parent = frames_[f.parent];
+    f.moves = parent.moves || f.frame.transforms.moves();
+    if (!f.moves) f.toContainer = then(chainAt(f.frame.transforms, {}), parent.toContainer);
+    f.identity = !f.moves && isIdentity(f.toContainer);
+    f.textured = parent.textured || !f.frame.textures.empty();
+  }
+}
+
+void SceneStore::prepare() {
+  for (PlacedFrame& frame : frames_)
+    if (frame.parent == kNone) place(frame);
+  for (std::size_t i = placed_; i < objects_.size(); ++i) {
+    PlacedObject& object = objects_[i];
+    const auto frame = frameIndex_.find(number(unplacedFrame_[i - placed_]));
+    if (frame == frameIndex_.end()) ++leftOut_;
+    object.frame = frame == frameIndex_.end() ? 0 : frame->second;
+    // The innermost surface: the object's own, else that of the frames around it, inside out.
+    SurfaceId bound = unplacedSurface_[i - placed_];
+    for (FrameIndex f = object.frame; bound == kNoSurface && f != 0; f = frames_[f].parent)
+      bound = frames_[f].frame.surface;
+    const auto surface = surfaceIndex_.find(number(bound));
+    if (bound != kNoSurface && surface == surfaceIndex_.end()) ++leftOut_;
+    object.surface = surface == surfaceIndex_.end() ? kNone : surface->second;
+  }
+  placed_ = objects_.size();
+  std::vector<FrameId>().swap(unplacedFrame_);
+  std::vector<SurfaceId>().swap(unplacedSurface_);
+}
+
+std::span<const ObjectIndex> SceneStore::objectsOf(DefinitionId definition) const {
+  const auto found = members_.find(number(definition));
+  if (found == members_.end()) return {};
+  return found->second;
+}
+
+std::vector<DefinitionId> SceneStore::definitions() const {
+  // A definition is closed before it is used, so an inner one always has the smaller number.
+  std::vector<DefinitionId> sorted = definitions_;
+  std::sort(sorted.begin(), sorted.end());
+  return sorted;
+}
+
+std::size_t SceneStore::bytes() const {
+  std::size_t total = objects_.capacity() * sizeof(PlacedObject) + frames_.capacity() * sizeof(PlacedFrame) +
+                      surfaces_.capacity() * sizeof(Surface) + bytesOf(shapes_);
+  for (const auto& [id, list] : members_) total += list.capacity() * sizeof(ObjectIndex);
+  return total;
+}
+
+Bounds placedBounds(const Bounds& own, bool moves, const std::function<Affine(const Moment&)>& mapAtMoment,
+                    const Exposure& exposure) {
+  if (!moves) {
+    const Affine map = mapAtMoment({});
+    return padded(isIdentity(map) ? own : mapBounds(map, own));
+  }
+  // The union over many moments, enlarged by the largest step between two of them, so that what happens in between
+  // stays inside.  differs from rayshade4: which takes moments by chance and may clip.
+  constexpr int kMoments = 64;
+  Bounds all, previous;
+  double step = 0;
+  for (int i = 0; i <= kMoments; ++i) {
+    const double time = exposure.opens + (exposure.closes - exposure.opens) * i / kMoments;
+    const Bounds now = mapBounds(mapAtMoment({time, exposure.frame}), own);
+    if (i > 0 && now.finite() && previous.finite())
+      step = std::max({step, maxAbs(now.low - previous.low), maxAbs(now.high - previous.high)});
+    all = join(all, now);
+    previous = now;
+    if (exposure.closes == exposure.opens) break;
+  }
+  const Vec3 margin{step, step, step};
+  return padded({all.low - margin, all.high + margin});
+}
+
+Affine mapAt(const SceneStore& store, FrameIndex index, const Moment& moment) {
+  const PlacedFrame& frame = store.frame(index);
+  if (!frame.moves) return frame.toContainer;
+  return then(chainAt(frame.frame.transforms, moment), mapAt(store, frame.parent, moment));
+}
+
+}  // namespace rayshade

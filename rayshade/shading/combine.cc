@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rayshade/shading/combine.h"
+
+#include "rayshade/optics/refraction.h"
+
+namespace rayshade {
+namespace {
+
+// Adds one point of a light (the shading model of the language reference, Phong 1975 without normalisation).
+Color addLight(Color sum, const Intersection& hit, const LightSample& sample, Color light) {
+  const Surface& surface = hit.surface;
+  const Vec3 reflected = mirrored(hit.direction, hit.normal);
+  const double along = dot(reflected, sample.toward);
+  const double cosine = lightCosine(sample.toward, hit.normal, hit.geometricNormal, hit.smooth);
+  if (cosine > 0) {
+    sum = sum + cosine * (surface.diffuse * light);
+    const double lobe = phongLobe(along, surface.specularPower);
+    return lobe > 0 ? sum + lobe * (surface.specular * light) : sum;
+  }
+  sum = sum + -cosine * (surface.translucent * light);
+  const double lobe = phongLobe(-along, surface.translucentPower);
+  if (lobe > 0) sum = sum + lobe * (surface.body * light);
+  // Everything summed so far is scaled, ambient and earlier lights included: what rayshade does.
+  return surface.translucency * sum;
+}
+
+Color throughAir(Color seen, Vec3 origin, Vec3 direction, double distance, const Setting& setting) {
+  const AirPath path{origin, origin + distance * direction, distance};
+  // The last effect of the file is applied first (rayshade's order).
+  for (std::size_t i = setting.atmosphere.size(); i-- > 0;)
+    seen = std::visit([&](const auto& effect) { return effect.apply(seen, path); }, setting.atmosphere[i]);
+  return seen;
+}
+
+}  // namespace
+
+Intersection describe(const Ray& ray, double t, const SurfacePoint& at, const Secondary& spawned) {
+  Intersection hit;
+  hit.origin = ray.origin;
+  hit.direction = ray.direction;
+  hit.distance = t;
+  hit.key = ray.key;
+  hit.sample = ray.sample;
+  hit.extinct = ray.extinct;
+  hit.inAir = ray.media.empty();
+  hit.position = at.position;
+  hit.normal = at.normal;
+  hit.geometricNormal = at.geometricNormal;
+  hit.smooth = at.smooth;
+  hit.surface = at.surface;
+  hit.lit = spawned.lit;
+  hit.transmitted = spawned.transmitted.has_value();
+  hit.reflected = spawned.reflected.has_value();
+  hit.transmitWeight = spawned.transmitWeight;
+  hit.reflectWeight = spawned.reflectWeight;
+  return hit;
+}
+
+Color combine(const Intersection& hit, const Gathered& gathered, const Setting& setting) {
+  Color sum = hit.surface.ambient * setting.ambient;
+  std::size_t end = hit.lit.size();  // of the points of the light that is being added
+  for (std::size_t l = setting.lights.size(); l-- > 0;) {
+    const LightSource& light = setting.lights[l];
+    const auto points = static_cast<std::size_t>(pointsOf(light));
+    const std::size_t begin = end - points;
+    const LightQuery query =
+        lightQuery(hit.position, hit.key, hit.sample, static_cast<std::uint32_t>(l), setting);
+    for (std::size_t p = begin; p < end; ++p) {
+      if (hit.lit[p] == Lit::no) continue;
+      const Color through = hit.lit[p] == Lit::asked ? gathered.light[p] : kWhite;
+      if (through == kBlack) continue;
+      const LightSample sample = sampleLight(light, query, static_cast<int>(p - begin));
+      sum = addLight(sum, hit, sample, sample.factor * (light.color * through));
+    }
+    end = begin;
+  }
+  if (hit.transmitted) sum = sum + hit.transmitWeight * gathered.transmitted;
+  if (hit.reflected) sum = sum + hit.reflectWeight * gathered.reflected;
+  if (hit.extinct != 1) sum = std::pow(hit.extinct, hit.distance) * sum;
+  if (hit.inAir && !setting.atmosphere.empty())
+    sum = throughAir(sum, hit.origin, hit.direction, hit.distance, setting);
+  return sum;
+}
+
+Color missed(const Ray& ray, const Setting& setting) {
+  Color seen = setting.background;
+  if (ray.extinct != 1) seen = std::pow(ray.extinct, kFarAway) * seen;
+  if (ray.media.empty() && !setting.atmosphere.empty())
+    seen = throughAir(seen, ray.origin, ray.direction, kFarAway, setting);
+  return seen;
+}
+
+}  // namespace rayshade

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rayshade/shading/evaluate.h"
+
+#include "rayshade/space/probe.h"
+#include "rayshade/textures/apply.h"
+
+namespace rayshade {
+namespace {
+
+// The way of a hit from the space of its shape up to the world, through the frames one by one because the textures of
+// each work in the space that it leads to.
+class Climb {
+ public:
+  Climb(const Ray& ray, const PathStep& shape, const ShapePoint& point, const Surface& surface, int side)
+      : moment_(ray.moment), shapeNormal_(point.geometricNormal) {
+    hit_.surface = surface;
+    hit_.normal = point.normal;
+    hit_.key = ray.key;
+    hit_.sample = ray.sample;
+    hit_.side = side;
+    place_.position = point.position;
+    place_.rayOrigin = shape.ray.origin;
+    place_.rayDirection = shape.ray.direction;
+  }
+
+  // From the inside of a frame to the space of its container.  `ofPrimitive` as for applyTexture().
+  template <class OfPrimitive>
+  void through(const SceneStore& store, FrameIndex index, const OfPrimitive& ofPrimitive) {
+    for (; index != 0; index = store.frame(index).parent) {
+      const Frame& frame = store.frame(index).frame;
+      const Affine own = chainAt(frame.transforms, moment_);
+      place_.object = then(place_.object, own);
+      place_.position = mapPoint(own.forward, place_.position);
+      place_.rayOrigin = mapPoint(own.forward, place_.rayOrigin);
+      place_.rayDirection = mapVector(own.forward, place_.rayDirection);
+      if (!frame.transforms.empty()) hit_.normal = normalize(mapNormal(own.inverse, hit_.normal));
+      place_.geometricNormal = shapeNormal_;
+      for (const PlacedTexture& placed : frame.textures) {
+        place_.texture = chainAt(placed.transforms, moment_);
+        applyTexture(placed.texture, hit_, place_, ofPrimitive);
+      }
+    }
+  }
+
+  const TextureHit& hit() const { return hit_; }
+
+ private:
+  Moment moment_;
+  Vec3 shapeNormal_;
+  TextureHit hit_;
+  TexturePlace place_;
+};
+
+}  // namespace
+
+const Surface& boundSurface(const Model& model, const HitPath& path) {
+  const SceneStore& store = model.store();
+  for (std::size_t i = path.steps.size(); i-- > 0;) {
+    const SurfaceIndex surface = store.object(path.steps[i].object).surface;
+    if (surface != kNone) return store.surface(surface);
+  }
+  return store.surfaceOrDefault(kNone);
+}
+
+SurfacePoint evaluateSurface(const Model& model, const Hit& hit, const Ray& ray, const Setting& setting) {
+  const SceneStore& store = model.store();
+  const HitPath path = pathTo(model, ray, hit);
+  const PathStep& last = path.steps.back();
+  ShapePoint shapePoint = withShape(store, store.object(last.object), [&](const auto& shape) {
+    return shape.pointAt(last.ray, rootAt(model, last, hit.t));
+  });
+
+  // Which way does it face?  On interpolated normals that disagree with the surface itself, the surface decides.
+  Vec3 direction = last.ray.direction;
+  double k = dot(direction, shapePoint.normal);
+  const double g = dot(direction, shapePoint.geometricNormal);
+  if ((k <= 0 && g > 0) || (k >= 0 && g < 0)) k = g;
+  SurfacePoint at;
+  at.smooth = shapePoint.normal != shapePoint.geometricNormal;
+  at.entering = path.entering ? *path.entering : k <= 0;
+  if (k > 0) {
+    shapePoint.normal = -shapePoint.normal;
+    shapePoint.geometricNormal = -shapePoint.geometricNormal;
+  }
+
+  // Up to the world.
+  bool textured = false;
+  Affine toWorld;
+  for (std::size_t i = path.steps.size(); i-- > 0;) {
+    const FrameIndex frame = store.object(path.steps[i].object).frame;
+    textured = textured || store.frame(frame).textured;
+    if (!store.frame(frame).identity) toWorld = then(toWorld, mapAt(store, frame, ray.moment));
+  }
+  at.surface = boundSurface(model, path);
+  at.normal = normalize(mapNormal(toWorld.inverse, shapePoint.normal));
+  if (textured) {
+    Climb climb(ray, last, shapePoint, at.surface, setting.samplesPerSide);
+    const auto ofPrimitive = [&](Vec3 position) {
+      return withShape(store, store.object(last.object),
+                       [&](const auto& shape) { return shape.coordinates(shapePoint, position); });
+    };
+    for (std::size_t i = path.steps.size(); i-- > 0;)
+      climb.through(store, store.object(path.steps[i].object).frame, ofPrimitive);
+    at.surface = climb.hit().surface;
+    at.normal = climb.hit().normal;
+  }
+  if (isIdentity(toWorld)) {
+    at.position = shapePoint.position;
+    at.geometricNormal = shapePoint.geometricNormal;
+    if (!textured) at.normal = shapePoint.normal;
+    at.error = shapePoint.error + kRounding * maxAbs(at.position);
+  } else {
+    at.position = mapPoint(toWorld.forward, shapePoint.position);
+    at.geometricNormal = normalize(mapNormal(toWorld.inverse, shapePoint.geometricNormal));
+    // The point's own error, that of mapping it out, and that of mapping a ray that starts there in again.
+    const double out = stretch(toWorld.forward), in = stretch(toWorld.inverse);
+    at.error = out * shapePoint.error +
+               kRounding * (out * maxAbs(shapePoint.position) + maxAbs(toWorld.forward.origin) +
+                            out * in * maxAbs(at.position) + out * maxAbs(toWorld.inverse.origin));
+  }
+  return at;
+}
+
+}  // namespace rayshade

@@ -1,0 +1,18 @@
+// Hit -> SurfacePoint: where it is, which way it faces, what it is made of.  The first of the four steps that needs
+// object data, and the last: what comes after works on values alone.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "rayshade/scene/setting.h"
+#include "rayshade/shading/surface_point.h"
+#include "rayshade/space/model.h"
+
+namespace rayshade {
+
+// Requires hit.found().
+SurfacePoint evaluateSurface(const Model& model, const Hit& hit, const Ray& ray, const Setting& setting);
+
+// The surface that binds a hit, before textures: the innermost of the path from the shape up to the world.
+const Surface& boundSurface(const Model& model, const HitPath& path);
+
+}  // namespace rayshade

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rayshade/shading/shadow.h"
+
+#include "rayshade/shading/evaluate.h"
+
+namespace rayshade {
+
+bool passShadow(const Model& model, const Region& region, ShadowRay& shadow, double tExit, const Setting& setting) {
+  const double end = std::min(tExit, shadow.distance);
+  const Obstruction met = obstruction(model, region, shadow.ray, shadow.last, end);
+  if (met.opaque) return false;
+  if (!met.transparent) return true;
+  if (!setting.transparentShadows) return false;
+  for (;;) {
+    const Hit hit = visit(model, region, shadow.ray, shadow.last, end);
+    if (!hit.found()) return true;
+    if (boundSurface(model, pathTo(model, shadow.ray, hit)).transparency < kNegligible) return false;
+    const SurfacePoint at = evaluateSurface(model, hit, shadow.ray, setting);
+    if (shadow.inside) shadow.through = shadow.through * std::pow(shadow.insideExtinct, hit.t - shadow.last);
+    shadow.through = shadow.through * (at.surface.transparency * at.surface.body);
+    if (!anyAbove(shadow.through, kNegligible)) return false;
+    shadow.inside = at.entering;
+    shadow.insideExtinct = at.surface.extinct;
+    shadow.last = hit.t;
+  }
+}
+
+}  // namespace rayshade

@@ -1,0 +1,74 @@
+// SurfacePoint -> the rays that are sent on from it, with what each will weigh.
+//
+// All decisions fall here - which lights are asked, what is refracted and what totally reflected, what weighs too
+// little - so that an intersection's record is final when it is written and its colours can come in any order.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+
+#include "rayshade/base/inline_vector.h"
+#include "rayshade/scene/setting.h"
+#include "rayshade/shading/surface_point.h"
+#include "rayshade/optics/ray.h"
+
+namespace rayshade {
+
+// What is known of one point of a light at a hit.
+enum class Lit : std::uint8_t {
+  no,     // can't change the colour: it is behind, or the surface does not answer it
+  fully,  // casts no shadow here
+  asked,  // a shadow ray is on its way
+};
+
+// The points of all lights in one row, lights in the order of the file.
+using LightStates = InlineVector<Lit, 8>;
+
+// A shadow ray: from a hit to a point of a light.
+struct ShadowRay {
+  Ray ray;
+  double distance = 0;     // things at this distance or farther do not matter          [world units]
+  Color through = kWhite;  // what has been let through so far
+  double last = 0;         // t of the last transparent surface that was crossed
+  double insideExtinct = 1;  // extinct of the solid it is in, if `inside`
+  bool inside = false;
+};
+
+struct Secondary {
+  LightStates lit;
+  std::optional<Ray> transmitted, reflected;
+  Color transmitWeight, reflectWeight;
+};
+
+std::size_t lightPointCount(const Setting& setting);
+
+Secondary spawnSecondary(const Ray& ray, const SurfacePoint& at, const Setting& setting);
+
+// The shadow ray to light point `point` (a position in Secondary::lit whose state is `asked`).
+ShadowRay shadowRay(const Ray& ray, const SurfacePoint& at, const Setting& setting, std::size_t point);
+
+// Which light, and which of its points, a position in the row means.
+struct LightPoint {
+  std::uint32_t light = 0;
+  int index = 0;
+};
+LightPoint lightPoint(const Setting& setting, std::size_t point);
+
+// What a light is asked for at a hit: the same question in spawn and in combine.
+LightQuery lightQuery(Vec3 position, RandomKey key, int sample, std::uint32_t light, const Setting& setting);
+
+// The cosine that decides on which side of the surface a light is: that of the shading normal, unless that one is
+// interpolated and says "behind" while the surface itself says "in front".
+inline double lightCosine(Vec3 toward, Vec3 normal, Vec3 geometricNormal, bool smooth) {
+  const double c = dot(toward, normal);
+  if (c > 0 || !smooth) return c;
+  const double g = dot(toward, geometricNormal);
+  return g > 0 ? g : c;
+}
+
+template <class Archive>
+void serialize(Archive& archive, ShadowRay& s) {
+  archive(s.ray, s.distance, s.through, s.last, s.insideExtinct, s.inside);
+}
+
+}  // namespace rayshade
