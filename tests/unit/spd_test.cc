@@ -129,6 +129,16 @@ TEST(Spd, TeapotNormalsAreUnitVectorsEvenAtThePoles) {
   }
 }
 
+TEST(Spd, MountainHasTheKnownHeights) {
+  const auto coarse = record("mount", 6).triangles;
+  EXPECT_NEAR(coarse[0][1].z, -0.0160409, 6e-7);
+  EXPECT_NEAR(coarse[2][2].z, 0.0317726, 6e-7);
+  EXPECT_NEAR(coarse[4][2].z, 0.0669606, 6e-7);
+  const auto fine = record("mount", 8).triangles;
+  EXPECT_NEAR(fine[0][2].z, -0.0228732, 6e-7);
+  EXPECT_NEAR(fine[4][2].z, -0.0428655, 6e-7);
+}
+
 TEST(Spd, MountainHasNoGaps) {
   std::map<std::pair<double, double>, double> heights;
   for (const auto& corners : record("mount", 4).triangles) {
