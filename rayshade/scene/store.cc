@@ -120,9 +120,11 @@ std::span<const ObjectIndex> SceneStore::objectsOf(DefinitionId definition) cons
 }
 
 std::vector<DefinitionId> SceneStore::definitions() const {
-  // A definition is closed before it is used, so an inner one always has the smaller number.
+  // What uses a definition comes after the last member of it, so sorted by their last members inner ones are first.
   std::vector<DefinitionId> sorted = definitions_;
-  std::sort(sorted.begin(), sorted.end());
+  std::sort(sorted.begin(), sorted.end(), [this](DefinitionId a, DefinitionId b) {
+    return members_.at(number(a)).back() < members_.at(number(b)).back();
+  });
   return sorted;
 }
 

@@ -75,8 +75,8 @@ std::string shown(char c) {
 
 }  // namespace
 
-Tokens::Tokens(ReadText read, std::string fileName) : read_(std::move(read)), window_(kWindow + 1) {
-  files_.push_back(std::move(fileName));
+Tokens::Tokens(ReadText read, const std::string& fileName) : read_(std::move(read)), window_(kWindow + 1) {
+  file_ = numberOfFile(fileName);
   next_ = end_ = window_.data();
 }
 
@@ -241,12 +241,12 @@ void Tokens::readMarker() {
 }
 
 std::uint32_t Tokens::numberOfFile(std::string_view name) {
-  const auto known = std::find(files_.begin(), files_.end(), name);
-  if (known == files_.end()) {
-    files_.emplace_back(name);
-    return static_cast<std::uint32_t>(files_.size() - 1);
-  }
-  return static_cast<std::uint32_t>(known - files_.begin());
+  std::string printable(name);  // it goes into messages: no byte may end or colour them
+  std::replace_if(
+      printable.begin(), printable.end(), [](char c) { return (c >= 0 && c < ' ') || c == 0x7f; }, '?');
+  const auto [at, isNew] = fileNumbers_.try_emplace(printable, static_cast<std::uint32_t>(files_.size()));
+  if (isNew) files_.push_back(printable);
+  return at->second;
 }
 
 bool Tokens::fileNameFollows() const {

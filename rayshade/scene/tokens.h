@@ -12,6 +12,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -55,7 +56,7 @@ class Tokens {
   static constexpr int kDeepestInclude = 60;
 
   // The first token is there after the first advance().
-  Tokens(ReadText read, std::string fileName);
+  Tokens(ReadText read, const std::string& fileName);
 
   const Token& current() const { return token_; }
   std::string_view text() const { return textAt(token_.place.offset, token_.length); }
@@ -98,6 +99,7 @@ class Tokens {
   std::uint32_t line_ = 1, file_ = 0;
   int includeDepth_ = 0;
   std::vector<std::string> files_;
+  std::map<std::string, std::uint32_t> fileNumbers_;
   Token token_;
 };
 

@@ -37,6 +37,14 @@ bool windsAround(const std::vector<Vec3>& corners, const Shear& shear) {
   return winding != 0;
 }
 
+// The projection along an axis, with a point as origin.
+auto dropAxis(Vec3 origin, int axis) {
+  return [=](Vec3 corner) {
+    const Vec3 p = corner - origin;
+    return ShearedPoint{p[(axis + 1) % 3], p[(axis + 2) % 3]};
+  };
+}
+
 // t, moved to where the ray is inside of the extent.
 double insideExtent(const Bounds& extent, const LocalRay& ray, double t) {
   double entry = -kInfinity, exit = kInfinity;
@@ -70,6 +78,7 @@ std::optional<Polygon> Polygon::parse(Arguments& in) {
   for (const Vec3& corner : polygon.corners) {
     if (std::abs(dot(corner - polygon.corners[0], polygon.normal)) <= kBend * size) continue;
     in.warn("the corners of this polygon are not in one plane");
+    polygon.bent = true;
     break;
   }
   return polygon;
@@ -84,7 +93,8 @@ Bounds Polygon::bounds() const {
 double Polygon::intersect(const LocalRay& ray, double tMin) const {
   const double t = meetPlane(ray, corners[0], normal);
   if (!(std::abs(t) < kNoHit)) return kNoHit;
-  const bool inside = lookAlong(ray, [this](const auto& shear) { return windsAround(corners, shear); });
+  const bool inside = bent ? windsAround(corners, dropAxis(ray.origin + t * ray.direction, dominantAxis(normal)))
+                           : lookAlong(ray, [this](const auto& shear) { return windsAround(corners, shear); });
   if (!inside) return kNoHit;
   const double clipped = insideExtent(bounds(), ray, t);
   return clipped > tMin ? clipped : kNoHit;
@@ -95,6 +105,6 @@ ShapePoint Polygon::pointAt(const LocalRay& ray, double t) const {
   return {position, normal, normal, {}, kRounding * (maxAbs(position) + maxAbs(corners[0]))};
 }
 
-Polygon Polygon::flipped() const { return {{corners.rbegin(), corners.rend()}, -normal}; }
+Polygon Polygon::flipped() const { return {{corners.rbegin(), corners.rend()}, -normal, bent}; }
 
 }  // namespace rayshade

@@ -6,7 +6,8 @@
 // counter-clockwise.  The ray is inside when the outline, seen along the ray (shear.h), winds around it a
 // number of times that is not zero, or passes through it exactly; so polygons that share an edge do not leak.
 // t is that of the plane, but not beyond the extent of the corners: that matters when the corners are not
-// quite in a plane and the ray grazes it.
+// quite in a plane and the ray grazes it.  When they are visibly not in a plane, corners and hit are projected
+// along the largest component of the normal, as rayshade does, because that is how such pictures look.
 // Source: Newell's method as in Sutherland, Sproull & Schumacker, 1974; winding number: Sunday, 2001.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
@@ -20,6 +21,7 @@ namespace rayshade {
 struct Polygon {
   std::vector<Vec3> corners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   Vec3 normal{0, 0, 1};  // unit
+  bool bent = false;     // the corners are visibly not in one plane
 
   static constexpr std::string_view keyword = "polygon";
   static constexpr bool closed = false;
@@ -42,7 +44,7 @@ struct Polygon {
 
 template <class Archive>
 void serialize(Archive& archive, Polygon& p) {
-  archive(p.corners, p.normal);
+  archive(p.corners, p.normal, p.bent);
   if constexpr (Archive::kReading) {
     if (p.corners.size() < 3) {
       p = {};

@@ -81,7 +81,7 @@ std::optional<PhongTriangle> PhongTriangle::checked(Triangle face, const std::ar
     if (!isFinite(n)) return std::nullopt;
   if (!face.hasArea()) return std::nullopt;
   if (dot(face.normal(), normals[0]) < 0) in.warn("the corners run clockwise seen from the first normal");
-  return PhongTriangle{face, normals};
+  return PhongTriangle{face, {normalize(normals[0]), normalize(normals[1]), normalize(normals[2])}};
 }
 
 std::optional<PhongTriangle> PhongTriangle::parse(Arguments& in) {

@@ -9,8 +9,9 @@ namespace {
 template <class S>
 double intersectShape(const S& shape, const LocalRay& ray, double tMin) {
   if (ray.scale == 1) return shape.intersect(ray, tMin);
-  // t > tMin must hold in world units too, where two roots may round to one.
-  double local = shape.intersect(ray, tMin * ray.scale);
+  // What counts is t > tMin in world units: two roots may round to one there, and one root to two.
+  const double from = tMin * ray.scale;
+  double local = shape.intersect(ray, from - std::abs(from) * 0x1p-50);
   while (local < kNoHit && local / ray.scale <= tMin) local = shape.intersect(ray, local);
   return local / ray.scale;
 }
