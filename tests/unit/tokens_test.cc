@@ -143,6 +143,12 @@ TEST(Tokens, FollowLineMarkers) {
   EXPECT_THROW(place(), Fault);  // a # that is not in the first column
 }
 
+TEST(Tokens, PrintNoControlBytesOfFileNames) {
+  TextTokens t(std::string("# 1 \"\0a\x1b[1m\"\nb", 14));
+  t.tokens.advance();
+  EXPECT_EQ(t.tokens.describe(t.tokens.current().place).file, "?a?[1m");
+}
+
 TEST(Tokens, RefuseDirectives) {
   const Fault fault = faultOf("a\n#define b c\n");
   EXPECT_NE(fault.message.find("#define b c"), std::string::npos) << fault.message;
