@@ -1,55 +1,106 @@
 # rayshade-pvm
 #
 #   make              build the programs into bin/
-#   make check        install what is missing, build, run all tests
 #   make demo         install what is missing, render a picture over PVM, compare it with the sequential one
-#   make SAN=address,undefined check     the same with sanitizers, in a build tree of its own
+#   make check        install what is missing, build, run all tests
+#   make install PREFIX=/usr/local        programs into PREFIX/bin, and where `pvm` looks by convention
+#   make SAN=address,undefined check      the same with sanitizers, in a build tree of its own
+#   make fuzz         the two fuzzers (clang), FUZZ_SECONDS each
+#   make bench        the measuring programs into bin/bench/
 #
-# Sources find themselves: a new file needs no edit here.  Every program is linked from one library of the same object
-# files, so every program does the same arithmetic.  Only files under pvm/ that say so need libpvm3.
+# Sources find themselves: a new file needs no edit here.  Every program is linked from one library of the same
+# object files, so every program does the same arithmetic.  Only the PVM programs link libpvm3.
 
+comma := ,
 CXX ?= g++
 BUILD ?= build$(if $(SAN),-$(subst $(comma),-,$(SAN)))
 BIN ?= $(if $(SAN),$(BUILD)/bin,bin)
-comma := ,
+PREFIX ?= /usr/local
+FUZZ_SECONDS ?= 60
 OPTIMIZE ?= -O2
 # -ffp-contract=off: a fused multiply-add would give other bits on machines that have one.
-CXXFLAGS := -std=c++20 $(OPTIMIZE) -g1 -Wall -Wextra -Werror -ffp-contract=off -I. $(if $(SAN),-fsanitize=$(SAN) -fno-sanitize-recover=all -fno-omit-frame-pointer) $(EXTRA_CXXFLAGS)
-LDFLAGS := $(if $(SAN),-fsanitize=$(SAN)) $(EXTRA_LDFLAGS)
+FLAGS := -std=c++20 $(OPTIMIZE) -g1 -Wall -Wextra -Werror -ffp-contract=off -I. \
+         $(if $(SAN),-fsanitize=$(SAN) -fno-sanitize-recover=all -fno-omit-frame-pointer)
+LIBRARIES := -lpng
 
-core_sources := $(filter-out %/main.cc,$(shell find rayshade scenes -name '*.cc'))
-core_objects := $(core_sources:%.cc=$(BUILD)/%.o)
-test_sources := $(shell find tests/unit tests/property tests/golden tests/support -name '*.cc' 2>/dev/null)
-test_objects := $(test_sources:%.cc=$(BUILD)/%.o)
+objects = $(patsubst %.cc,$(BUILD)/%.o,$(1))
+find_sources = $(sort $(shell find $(1) -name '*.cc'))
 
-.PHONY: all clean format test
-all: $(BIN)/rayshade $(BIN)/spd
+core := $(call objects,$(filter-out rayshade/main.cc,$(call find_sources,rayshade)))
+spd := $(call objects,$(filter-out scenes/spd/main.cc,$(call find_sources,scenes/spd)))
+pvm_door := $(call objects,pvm/pvm_link.cc pvm/virtual_machine.cc)
+pvm_programs := $(call objects,pvm/main.cc pvm/host_program.cc)
+tasks := $(filter-out $(pvm_door) $(pvm_programs),$(call objects,$(call find_sources,pvm)))
+# Tests that need no PVM daemon make one program, those that do another one.
+pvm_tests := $(call objects,tests/parallel/pvm_test.cc)
+link_test := $(call objects,tests/parallel/link_test.cc)
+tests := $(filter-out $(pvm_tests) $(link_test),$(call objects,$(call find_sources,tests/unit tests/property tests/golden tests/parallel tests/fault tests/support)))
+benches := $(patsubst tests/bench/%.cc,$(BIN)/bench/%,$(call find_sources,tests/bench))
+
+roles := host voxel-trace shade
+programs := $(BIN)/rayshade $(BIN)/spd $(roles:%=$(BIN)/rayshade-%)
+test_programs := $(BIN)/rayshade-tests $(BIN)/link-tests $(BIN)/pvm-tests
+
+.PHONY: all demo check test install fuzz bench format clean packages
+all: $(programs)
 
 $(BUILD)/%.o: %.cc
 	@mkdir -p $(@D)
-	$(CXX) $(CXXFLAGS) -MMD -MP -c $< -o $@
+	$(CXX) $(FLAGS) $(EXTRA_FLAGS) -MMD -MP -c $< -o $@
 
-$(BUILD)/libcore.a: $(core_objects)
+$(BUILD)/libcore.a: $(core)
+$(BUILD)/libtasks.a: $(tasks)
+$(BUILD)/libspd.a: $(spd)
+$(BUILD)/lib%.a:
 	@rm -f $@
 	ar rcs $@ $^
 
+link = @mkdir -p $(@D) && echo "link $@" && $(CXX) $(FLAGS) $(EXTRA_FLAGS) $(filter %.o,$^) $(filter %.a,$^) $(1) $(LIBRARIES) -o $@
+
 $(BIN)/rayshade: $(BUILD)/rayshade/main.o $(BUILD)/libcore.a
-	@mkdir -p $(@D)
-	$(CXX) $(LDFLAGS) $^ -lpng -o $@
+	$(call link)
+$(BIN)/spd: $(BUILD)/scenes/spd/main.o $(BUILD)/libspd.a
+	$(call link)
+$(BIN)/rayshade-host: $(pvm_programs) $(pvm_door) $(BUILD)/libtasks.a $(BUILD)/libcore.a
+	$(call link,-lpvm3)
+# The role of a task is the name under which it was started: one program, several names.
+$(BIN)/rayshade-voxel-trace $(BIN)/rayshade-shade: $(BIN)/rayshade-host
+	ln -f $< $@
+$(BIN)/rayshade-tests: $(tests) $(BUILD)/libtasks.a $(BUILD)/libspd.a $(BUILD)/libcore.a
+	$(call link,-lgtest -lgtest_main -lpthread)
+$(BIN)/link-tests: $(link_test) $(pvm_door) $(BUILD)/libtasks.a $(BUILD)/libcore.a
+	$(call link,-lgtest -lpthread -lpvm3)
+$(BIN)/pvm-tests: $(pvm_tests) $(pvm_door) $(BUILD)/libtasks.a $(BUILD)/libcore.a
+	$(call link,-lgtest -lgtest_main -lpthread -lpvm3)
+$(BIN)/bench/%: $(BUILD)/tests/bench/%.o $(pvm_door) $(BUILD)/libtasks.a $(BUILD)/libspd.a $(BUILD)/libcore.a
+	$(call link,-lbenchmark -lpthread -lpvm3)
 
-$(BIN)/spd: $(BUILD)/scenes/spd/main.o $(BUILD)/libcore.a
-	@mkdir -p $(@D)
-	$(CXX) $(LDFLAGS) $^ -o $@
+packages:
+	@tests/support/install_packages
 
-$(BIN)/rayshade-tests: $(test_objects) $(BUILD)/libcore.a
-	@mkdir -p $(@D)
-	$(CXX) $(LDFLAGS) $^ -lpng -lgtest -lgtest_main -lpthread -o $@
+demo: packages
+	@$(MAKE) --no-print-directory -j2 all
+	@tests/support/demo $(BIN)
 
-test: $(BIN)/rayshade-tests
-	$(BIN)/rayshade-tests
+check: packages
+	@$(MAKE) --no-print-directory -j2 SAN=$(SAN) test
+test: $(programs) $(test_programs)
+	@tests/support/run_tests $(BIN)
+
+bench: $(benches)
+
+fuzz:
+	@tests/support/fuzz $(FUZZ_SECONDS)
+
+install: all
+	install -d $(DESTDIR)$(PREFIX)/bin
+	install -m 755 $(programs) $(DESTDIR)$(PREFIX)/bin
+	@if [ -z "$(DESTDIR)" ]; then \
+	  install -d $$HOME/pvm3/bin/LINUX64 && \
+	  for role in $(roles); do ln -sf $(abspath $(PREFIX))/bin/rayshade-$$role $$HOME/pvm3/bin/LINUX64/; done; fi
 
 format:
-	clang-format -i $$(find rayshade pvm tests scenes -name '*.cc' -o -name '*.h')
+	clang-format -i $(shell find rayshade pvm scenes tests -name '*.cc' -o -name '*.h')
 clean:
 	rm -rf build build-* bin
 

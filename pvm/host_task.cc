@@ -5,8 +5,15 @@
 
 namespace rayshade {
 
-HostTask::HostTask(Machine& machine, SceneReader scene, const Setting& setting, const HostOptions& options)
-    : machine_(machine), scene_(std::move(scene)), setting_(setting), options_(options), outbox_(machine) {
+HostTask::HostTask(Machine& machine, SceneReader scene, const Survey& survey, const Setting& setting,
+                   const HostOptions& options)
+    : machine_(machine),
+      scene_(std::move(scene)),
+      setting_(setting),
+      options_(options),
+      outbox_(machine),
+      survey_(survey) {
+  summary_.objects = survey.objects;
   placeTasks();
 }
 
@@ -100,14 +107,11 @@ void HostTask::reconfigure() {
   for (const auto& [serial, sample] : again) issue(serial, sample);
 }
 
-void HostTask::surveyScene() {
+void HostTask::surveyAgain() {
   const double begin = machine_.now();
-  world_ = {};
-  ObjectStream stream(exposure_, [this](const SceneObject&, const Bounds& bounds, std::span<const FrameItem* const>) {
-    if (bounds.finite()) world_ = join(world_, bounds);
-  });
-  scene_(stream);
-  summary_.objects = stream.objects();
+  SurveySink sink(exposure_);
+  scene_(sink);
+  survey_ = sink.survey();
   summary_.surveySeconds += machine_.now() - begin;
 }
 
@@ -279,11 +283,11 @@ void HostTask::renderFrame(const View& view, const PictureSpec& picture, std::in
   view_ = &view;
   picture_ = &picture;
   exposure_ = exposureOf(picture, frame);
-  surveyScene();
+  if (survey_.moves) surveyAgain();
   const auto voxelTasks = static_cast<std::uint32_t>(
       std::count_if(slaves_.begin(), slaves_.end(), [](const Slave& s) { return s.placement.role == Role::voxelTrace; }));
   const std::uint32_t voxels = voxelTasks * std::max(1u, options_.voxelsPerTask);
-  tree_ = buildBinTree(world_, {.voxels = voxels});
+  tree_ = buildBinTree(survey_.world, {.voxels = voxels});
   directory_.voxels.clear();
   for (std::uint32_t voxel = 0; voxel < voxels; ++voxel) directory_.voxels.push_back(voxel % voxelTasks);
   for (Slave& slave : slaves_) slave.hasItems = false;
@@ -319,8 +323,11 @@ HostSummary HostTask::finish() {
   auto missing = [](const Slave& s) { return s.task != kNobody && !s.reported; };
   const double deadline = machine_.now() + options_.killAfter;
   while (std::any_of(slaves_.begin(), slaves_.end(), missing) && machine_.now() < deadline) takeEvents(1);
+  // Those who have reported leave by themselves.
+  const double farewell = machine_.now() + 2;
+  while (!byTask_.empty() && machine_.now() < farewell) takeEvents(0.1);
   for (Slave& slave : slaves_) {
-    if (missing(slave)) machine_.kill(slave.task);
+    if (slave.task != kNobody) machine_.kill(slave.task);
     slave.summary.placement = slave.placement;
     summary_.tasks.push_back(slave.summary);
   }

@@ -19,6 +19,7 @@
 #include "pvm/shipping.h"
 #include "rayshade/image/sampler.h"
 #include "rayshade/render.h"
+#include "rayshade/scene/survey.h"
 
 namespace rayshade {
 
@@ -68,7 +69,9 @@ class HostTask {
     std::uint64_t samples = 0;
   };
 
-  HostTask(Machine& machine, SceneReader scene, const Setting& setting, const HostOptions& options);
+  // `survey`: of the first frame, or of any when nothing moves.
+  HostTask(Machine& machine, SceneReader scene, const Survey& survey, const Setting& setting,
+           const HostOptions& options);
 
   // Renders a frame of the animation; rows from top to bottom.  Throws HostError, and what the scene reader throws.
   void renderFrame(const View& view, const PictureSpec& picture, std::int32_t frame,
@@ -98,7 +101,7 @@ class HostTask {
     bool reported = false;
   };
 
-  void surveyScene();
+  void surveyAgain();
   void placeTasks();
   void reconfigure();
   bool startMissing();
@@ -127,7 +130,7 @@ class HostTask {
   BinTree tree_;
   Directory directory_;
   Exposure exposure_;
-  Bounds world_;
+  Survey survey_;
   bool someoneDied_ = false;
   int successions_ = 0;
 

@@ -4,6 +4,7 @@
 
 #include <cinttypes>
 
+#include "rayshade/interruption.h"
 #include "rayshade/options.h"
 #include "rayshade/progress.h"
 #include "rayshade/render.h"
@@ -52,16 +53,11 @@ int run(const Options& options) {
   Scene scene;
   SceneHead head = parseScene(options.parse, scene.model.store());
   applyOptions(options, head);
+  if (scene.model.store().objectCount() == 0) throw SceneError(sceneName(options) + ": error: there is nothing to be rendered");
   scene.setting = head.setting;
   const View view = *viewOf(head.camera, head.picture);
   const PixelArea area = *pixelArea(head.picture);
-  std::string outputFile = head.outputFile;
-  if (!options.outputFile.empty()) {
-    if (!head.outputFile.empty() && options.parse.warn)
-      options.parse.warn(options.parse.fileName + ": warning: outfile " + head.outputFile + " is ignored: -O " +
-                         options.outputFile);
-    outputFile = options.outputFile;
-  }
+  const std::string outputFile = chooseOutput(options, head);
   times.read = lap();
   const bool quiet = options.quiet || head.report.quiet;
   const bool report = options.verbose || !options.verboseFile.empty() || (head.report.wanted && head.report.verbose);
@@ -79,6 +75,7 @@ int run(const Options& options) {
     std::int32_t rows = 0;
     const FrameResult result =
         renderFrame(scene, view, head.picture, frame, options.seed, [&](const std::vector<Color>& row) {
+          checkInterruption();
           writer.row(row);
           if (report) appendRow(sum, row);
           ++rows;
@@ -108,6 +105,7 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }
+  listenForInterruption();
   options.parse.warn = [&options](const std::string& message) {
     if (!options.quiet) std::fprintf(stderr, "%s\n", message.c_str());
   };

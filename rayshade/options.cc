@@ -75,8 +75,21 @@ void applyOptions(const Options& o, SceneHead& head) {
     picture.samplesPerSide = 1;
     picture.jitter = true;
   }
-  checkHead(head, o.parse.fileName.empty() || o.parse.fileName == "-" ? "standard input" : o.parse.fileName);
+  checkHead(head, sceneName(o));
   setting.samplesPerSide = picture.samplesPerSide;
+}
+
+std::string sceneName(const Options& options) {
+  const std::string& name = options.parse.fileName;
+  return name.empty() || name == "-" ? "standard input" : name;
+}
+
+std::string chooseOutput(const Options& options, const SceneHead& head) {
+  if (options.outputFile.empty()) return head.outputFile;
+  if (!head.outputFile.empty() && options.parse.warn)
+    options.parse.warn(sceneName(options) + ": warning: outfile " + head.outputFile + " is ignored: -O " +
+                       options.outputFile);
+  return options.outputFile;
 }
 
 std::string frameFile(const std::string& name, std::int32_t frame, std::int32_t frames) {

@@ -36,6 +36,12 @@ void declareOptions(CLI::App& app, Options& options);
 // Puts what was said over what the scene file says.  Throws SceneError where the two do not go together.
 void applyOptions(const Options& options, SceneHead& head);
 
+// The name of the scene in messages.
+std::string sceneName(const Options& options);
+
+// -O, else what the scene says; warns when both do.
+std::string chooseOutput(const Options& options, const SceneHead& head);
+
 // Where frame number `frame` goes: name.png, or name.0007.png when there are several.
 std::string frameFile(const std::string& name, std::int32_t frame, std::int32_t frames);
 

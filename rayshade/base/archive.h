@@ -153,9 +153,7 @@ class Reader {
     } else {
       const std::size_t n = count(1);
       for (std::size_t i = 0; i < n && ok_; ++i) {
-        T element{};
-        get(element);
-        list.push_back(std::move(element));
+        get(list.emplace_back());
       }
     }
   }
