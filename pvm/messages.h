@@ -128,8 +128,8 @@ struct Expect {
   static constexpr bool isFact = false;
   RecordId record = 0;
   Intersection hit;
-  std::vector<Color> known;  // of the light points whose state is `asked` and `pending` does not name, in order
-  std::vector<Slot> pending; // light points whose colour will come in an Answer, ascending
+  InlineVector<Color, 8> known;   // of the light points whose state is `asked` and `pending` does not name, in order
+  InlineVector<Slot, 8> pending;  // light points whose colour will come in an Answer, ascending
   ReplyTo to;
 };
 
@@ -200,11 +200,24 @@ void serialize(Archive& archive, ShadowTask& m) {
 }
 template <class Archive>
 void serialize(Archive& archive, Expect& m) {
-  archive(m.record, m.hit, m.known, m.pending, m.to);
+  archive(m.record, m.hit, m.pending, m.to);
+  std::uint32_t known = static_cast<std::uint32_t>(m.known.size());
+  archive(known);
+  if constexpr (Archive::kReading) {
+    m.known.clear();
+    for (std::uint32_t i = 0; i < known && archive.ok(); ++i) {
+      Color color;
+      serializeCompact(archive, color);
+      m.known.push_back(color);
+    }
+  } else {
+    for (Color& color : m.known) serializeCompact(archive, color);
+  }
 }
 template <class Archive>
 void serialize(Archive& archive, Answer& m) {
-  archive(m.record, m.slot, m.color);
+  archive(m.record, m.slot);
+  serializeCompact(archive, m.color);
 }
 
 }  // namespace rayshade

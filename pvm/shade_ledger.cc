@@ -38,7 +38,7 @@ ShadeLedger::Verdict ShadeLedger::expect(Expect&& message, Settled& out) {
   Record& record = records_[id];
   if (record.expected) return Verdict::refused;
   record.gathered = std::move(gathered);
-  record.missing = message.pending;
+  record.missing.assign(message.pending.begin(), message.pending.end());
   if (message.hit.transmitted) record.missing.push_back(kTransmittedSlot);
   if (message.hit.reflected) record.missing.push_back(kReflectedSlot);
   record.expected = std::move(message);

@@ -171,7 +171,7 @@ void VoxelTask::shade(RayTask& task, const Hit& hit) {
       expect.known.push_back(progress.state == Progress::State::hit ? kBlack : shadow.shadow.through);
     }
   }
-  expect.hit = describe(task.ray, hit.t, at, spawned);
+  expect.hit = describe(task.ray, hit.t, at, spawned, setting_);
   desk_.outbox.post(shader, expect);
   if (spawned.transmitted) {
     ++counts_.transmittedRays;

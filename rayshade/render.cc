@@ -63,7 +63,7 @@ Color traceRay(const Scene& scene, const Ray& ray, TraceCounts& counts) {
     ++counts.reflectedRays;
     gathered.reflected = traceRay(scene, *spawned.reflected, counts);
   }
-  return combine(describe(ray, progress.hit.t, at, spawned), gathered, scene.setting);
+  return combine(describe(ray, progress.hit.t, at, spawned, scene.setting), gathered, scene.setting);
 }
 
 FrameResult renderFrame(const Scene& scene, const View& view, const PictureSpec& picture, std::int32_t frame,

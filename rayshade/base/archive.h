@@ -187,6 +187,48 @@ class Reader {
   bool ok_ = true;
 };
 
+// A field and the value that it usually has.
+template <class T>
+struct Usual {
+  T& value;
+  T usual;
+};
+template <class T>
+Usual(T&, T) -> Usual<T>;
+
+template <class T>
+bool sameBits(const T& a, const T& b) {
+  if constexpr (std::is_trivially_copyable_v<T>) {
+    return std::memcmp(&a, &b, sizeof a) == 0;  // not ==: -0 is not 0 here, and NaN is NaN
+  } else {
+    return a.empty() && b.empty();  // lists: only "empty" is usual
+  }
+}
+
+// Fields that mostly have their usual value: one bit each says which do not, and only those follow.
+template <class Archive, class... T>
+void serializeSparse(Archive& archive, Usual<T>... field) {
+  static_assert(sizeof...(T) <= 16);
+  std::uint16_t present = 0;
+  int bit = 0;
+  if constexpr (Archive::kReading) {
+    archive(present);
+    auto get = [&](auto& f) {
+      if (present >> bit++ & 1) {
+        archive(f.value);
+      } else {
+        f.value = f.usual;
+      }
+    };
+    (get(field), ...);
+  } else {
+    ((present |= static_cast<std::uint16_t>(!sameBits(field.value, field.usual) << bit++)), ...);
+    archive(present);
+    bit = 0;
+    ((present >> bit++ & 1 ? archive(field.value) : void()), ...);
+  }
+}
+
 template <class T>
 Bytes encode(const T& value) {
   Bytes out;

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "rayshade/base/archive.h"
+
 namespace rayshade {
 
 struct Color {
@@ -28,6 +30,22 @@ constexpr double largest(Color c) { return std::max({c.r, c.g, c.b}); }
 template <class Archive>
 void serialize(Archive& archive, Color& c) {
   archive(c.r, c.g, c.b);
+}
+
+// Most light that is let through is all or nothing: one byte then.
+template <class Archive>
+void serializeCompact(Archive& archive, Color& c) {
+  enum class Form : std::uint8_t { black, white, other };
+  Form form = Form::other;
+  if constexpr (!Archive::kReading) form = sameBits(c, kBlack) ? Form::black : sameBits(c, kWhite) ? Form::white : form;
+  archive(form);
+  if (form == Form::other) {
+    archive(c);
+  } else if (form <= Form::white) {
+    c = form == Form::black ? kBlack : kWhite;
+  } else {
+    if constexpr (Archive::kReading) archive.fail();
+  }
 }
 
 }  // namespace rayshade

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <type_traits>
 #include <vector>
 
@@ -63,14 +64,18 @@ class InlineVector {
 // On the wire like a vector: a count, checked against the bytes left, and the elements.
 template <class Archive, class T, std::size_t N>
 void serialize(Archive& archive, InlineVector<T, N>& list) {
-  std::vector<T> plain;
+  auto size = static_cast<std::uint32_t>(list.size());
+  archive(size);
   if constexpr (Archive::kReading) {
-    archive(plain);
     list.clear();
-    for (const T& element : plain) list.push_back(element);
+    if (size > archive.left() / sizeof(T)) return archive.fail();
+    for (std::uint32_t i = 0; i < size; ++i) {
+      T element{};
+      archive(element);
+      list.push_back(element);
+    }
   } else {
-    plain.assign(list.begin(), list.end());
-    archive(plain);
+    for (T& element : list) archive(element);
   }
 }
 

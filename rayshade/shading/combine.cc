@@ -34,20 +34,31 @@ Color throughAir(Color seen, Vec3 origin, Vec3 direction, double distance, const
 
 }  // namespace
 
-Intersection describe(const Ray& ray, double t, const SurfacePoint& at, const Secondary& spawned) {
+Intersection describe(const Ray& ray, double t, const SurfacePoint& at, const Secondary& spawned,
+                      const Setting& setting) {
   Intersection hit;
-  hit.origin = ray.origin;
   hit.direction = ray.direction;
-  hit.distance = t;
   hit.key = ray.key;
   hit.sample = ray.sample;
   hit.extinct = ray.extinct;
   hit.inAir = ray.media.empty();
+  const bool throughAtmosphere = hit.inAir && !setting.atmosphere.empty();
+  if (throughAtmosphere) hit.origin = ray.origin;
+  if (throughAtmosphere || hit.extinct != 1) hit.distance = t;
   hit.position = at.position;
   hit.normal = at.normal;
-  hit.geometricNormal = at.geometricNormal;
   hit.smooth = at.smooth;
-  hit.surface = at.surface;
+  if (at.smooth) hit.geometricNormal = at.geometricNormal;
+  hit.surface.ambient = at.surface.ambient;
+  hit.surface.diffuse = at.surface.diffuse;
+  hit.surface.specular = at.surface.specular;
+  hit.surface.specularPower = at.surface.specularPower;
+  if (at.surface.translucency >= kNegligible) {
+    hit.surface.body = at.surface.body;
+    hit.surface.translucent = at.surface.translucent;
+    hit.surface.translucency = at.surface.translucency;
+    hit.surface.translucentPower = at.surface.translucentPower;
+  }
   hit.lit = spawned.lit;
   hit.transmitted = spawned.transmitted.has_value();
   hit.reflected = spawned.reflected.has_value();

@@ -10,17 +10,19 @@
 
 namespace rayshade {
 
-// All that combine() needs to know of a hit.
+// All that combine() needs to know of a hit, and nothing else: what this scene does not ask for stays at its usual value,
+// which costs a bit on the wire.
 struct Intersection {
-  Vec3 origin, direction;  // of the ray that hit
-  double distance = 0;     // t of the hit
+  Vec3 origin, direction;  // of the ray that hit; the origin if the atmosphere asks for it
+  double distance = 0;     // t of the hit, if atmosphere or attenuation ask for it
   RandomKey key{};
   std::int32_t sample = 0;
   double extinct = 1;      // of what the ray travelled through, if it counts
   bool inAir = true;       // outside of all media: the atmosphere applies
-  Vec3 position, normal, geometricNormal;
-  bool smooth = false;
-  Surface surface;
+  Vec3 position, normal;
+  bool smooth = false;     // the normal is interpolated: then the geometric one counts too
+  Vec3 geometricNormal;
+  Surface surface;         // what is seen of it: neither its index nor how much it reflects
   LightStates lit;
   bool transmitted = false, reflected = false;
   Color transmitWeight, reflectWeight;
@@ -32,7 +34,8 @@ struct Gathered {
   Color transmitted, reflected;
 };
 
-Intersection describe(const Ray& ray, double t, const SurfacePoint& at, const Secondary& spawned);
+Intersection describe(const Ray& ray, double t, const SurfacePoint& at, const Secondary& spawned,
+                      const Setting& setting);
 
 Color combine(const Intersection& hit, const Gathered& gathered, const Setting& setting);
 
@@ -41,8 +44,16 @@ Color missed(const Ray& ray, const Setting& setting);
 
 template <class Archive>
 void serialize(Archive& archive, Intersection& i) {
-  archive(i.origin, i.direction, i.distance, i.key, i.sample, i.extinct, i.inAir, i.position, i.normal,
-          i.geometricNormal, i.smooth, i.surface, i.lit, i.transmitted, i.reflected, i.transmitWeight, i.reflectWeight);
+  Surface& surface = i.surface;
+  archive(i.position, i.direction, i.normal, i.key, i.lit);
+  serializeSparse(archive, Usual{i.origin, Vec3{}}, Usual{i.distance, 0.0}, Usual{i.sample, 0}, Usual{i.extinct, 1.0},
+                  Usual{i.inAir, true}, Usual{i.geometricNormal, Vec3{}}, Usual{i.smooth, false},
+                  Usual{i.transmitted, false}, Usual{i.reflected, false}, Usual{i.transmitWeight, kBlack},
+                  Usual{i.reflectWeight, kBlack});
+  serializeSparse(archive, Usual{surface.ambient, kBlack}, Usual{surface.diffuse, kBlack},
+                  Usual{surface.specular, kBlack}, Usual{surface.specularPower, 15.0}, Usual{surface.body, kWhite},
+                  Usual{surface.translucent, kBlack}, Usual{surface.translucency, 0.0},
+                  Usual{surface.translucentPower, 15.0});
 }
 
 }  // namespace rayshade

@@ -115,7 +115,6 @@ ShadowRay shadowRay(const Ray& ray, const SurfacePoint& at, const Setting& setti
   shadow.ray.origin = originOff(at, sample.shadowToward);
   shadow.ray.direction = sample.shadowToward;
   shadow.ray.moment = ray.moment;
-  shadow.ray.depth = ray.depth;
   shadow.ray.sample = ray.sample;
   shadow.ray.key = ray.key;
   shadow.distance = sample.shadowDistance;

@@ -68,7 +68,9 @@ inline double lightCosine(Vec3 toward, Vec3 normal, Vec3 geometricNormal, bool s
 
 template <class Archive>
 void serialize(Archive& archive, ShadowRay& s) {
-  archive(s.ray, s.distance, s.through, s.last, s.insideExtinct, s.inside);
+  archive(s.ray);
+  serializeSparse(archive, Usual{s.distance, kInfinity}, Usual{s.through, kWhite}, Usual{s.last, 0.0},
+                  Usual{s.insideExtinct, 1.0}, Usual{s.inside, false});
 }
 
 }  // namespace rayshade
