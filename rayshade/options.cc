@@ -16,9 +16,9 @@ void declareOptions(CLI::App& app, Options& o) {
   app.add_flag("-f", o.parse.flipTriangleNormals, "flip the normals of triangles and polygons")->group(input);
 
   app.add_option("-O", o.outputFile, "output file: .png .ppm .pfm (linear floats), anything else the generic format; - is standard output")->group(picture);
-  app.add_option("-R", o.resolution, "width and height in pixels")->expected(2)->group(picture);
-  app.add_option("-W", o.window, "render only the pixels x0 x1 y0 y1")->expected(4)->group(picture);
-  app.add_option("-X", o.crop, "crop to left right bottom top, shares of the window")->expected(4)->group(picture);
+  app.add_option("-R", o.resolution, "width and height in pixels")->expected(2)->allow_extra_args(false)->group(picture);
+  app.add_option("-W", o.window, "render only the pixels x0 x1 y0 y1")->expected(4)->allow_extra_args(false)->group(picture);
+  app.add_option("-X", o.crop, "crop to left right bottom top, shares of the window")->expected(4)->allow_extra_args(false)->group(picture);
   app.add_option("-G", o.gamma, "gamma of the output (1: linear)")->group(picture);
   app.add_flag("--16", o.sixteenBit, "PNG with 16 bits a channel")->group(picture);
   app.add_flag("-l", o.leftEye, "render the left eye of a stereo pair")->group(picture);
@@ -28,8 +28,8 @@ void declareOptions(CLI::App& app, Options& o) {
   app.add_option("-N", o.frames, "number of frames")->group(picture);
 
   app.add_option("-S", o.samples, "samples along each side of a pixel, 1 to 8")->group(quality);
-  app.add_option("-T", o.contrast, "contrast r g b above which a pixel gets all of its samples")->expected(3)->group(quality);
-  app.add_option("-C", o.cutoff, "weight r g b below which no ray is sent")->expected(3)->group(quality);
+  app.add_option("-T", o.contrast, "contrast r g b above which a pixel gets all of its samples")->expected(3)->allow_extra_args(false)->group(quality);
+  app.add_option("-C", o.cutoff, "weight r g b below which no ray is sent")->expected(3)->allow_extra_args(false)->group(quality);
   app.add_option("-D", o.maxDepth, "largest number of reflections and refractions in a row")->group(quality);
   app.add_flag("-j", o.toggleJitter, "sample the corners of the cells instead of jittering")->group(quality);
   app.add_flag("-g", o.gaussian, "Gaussian pixel filter, unless the scene names one")->group(quality);
