@@ -11,16 +11,7 @@ void VoxelTask::on(TaskId, Forget) {
 }
 
 void VoxelTask::on(TaskId from, Items message) {
-  SceneStore& store = model_->store();
-  for (Item& item : message.items) {
-    if (auto* surface = std::get_if<SurfaceItem>(&item)) {
-      store.surface(surface->id, surface->surface);
-    } else if (auto* frame = std::get_if<FrameItem>(&item)) {
-      store.frame(frame->id, std::move(frame->frame));
-    } else {
-      store.object(std::move(std::get<SceneObject>(item)));
-    }
-  }
+  model_->take(std::move(message.items));
   itemsAreNew_ = true;
   desk_.outbox.post(from, ItemsTaken{});
 }

@@ -27,6 +27,7 @@ SceneStore::SceneStore() {
 void SceneStore::surface(SurfaceId id, const Surface& surface) {
   if (surfaceIndex_.try_emplace(number(id), static_cast<SurfaceIndex>(surfaces_.size())).second) {
     surfaces_.push_back(surface);
+    surfaceIds_.push_back(id);
     anyTransparent_ = anyTransparent_ || surface.transparency >= kNegligible;
   }
 }
@@ -39,6 +40,7 @@ void SceneStore::frame(FrameId id, Frame frame) {
     ++leftOut_;
   }
   frames_.emplace_back();
+  frames_.back().id = id;
   frames_.back().frame = std::move(frame);
   frames_.back().parent = kNone;  // until prepare()
 }

@@ -34,6 +34,7 @@ struct PlacedObject {
 };
 
 struct PlacedFrame {
+  FrameId id = kRootFrame;
   FrameIndex parent = 0;
   Affine toContainer;        // when nothing on the way moves
   bool moves = false;        // something on the way to the container does
@@ -63,6 +64,7 @@ class SceneStore : public SceneSink {
   const PlacedFrame& frame(FrameIndex index) const { return frames_[index]; }
   const Surface& surface(SurfaceIndex index) const { return surfaces_[index]; }
   const Surface& surfaceOrDefault(SurfaceIndex index) const { return index == kNone ? default_ : surfaces_[index]; }
+  SurfaceId surfaceId(SurfaceIndex index) const { return index == kNone ? kNoSurface : surfaceIds_[index]; }
   std::size_t objectCount() const { return objects_.size(); }
 
   template <class S>
@@ -84,6 +86,7 @@ class SceneStore : public SceneSink {
   std::vector<PlacedObject> objects_;
   std::vector<PlacedFrame> frames_;
   std::vector<Surface> surfaces_;
+  std::vector<SurfaceId> surfaceIds_;
   AllShapes::Vectors shapes_;
   std::vector<Instance> instances_;
   std::vector<Csg> csgs_;

@@ -56,6 +56,18 @@ Region Model::regionOf(std::vector<ObjectIndex> objects) const {
   return region;
 }
 
+void Model::take(std::vector<Item>&& items) {
+  for (Item& item : items) {
+    if (auto* surface = std::get_if<SurfaceItem>(&item)) {
+      store_.surface(surface->id, surface->surface);
+    } else if (auto* frame = std::get_if<FrameItem>(&item)) {
+      store_.frame(frame->id, std::move(frame->frame));
+    } else {
+      store_.object(std::move(std::get<SceneObject>(item)));
+    }
+  }
+}
+
 void Model::prepare(const Exposure& exposure) {
   exposure_ = exposure;
   store_.prepare();

@@ -32,6 +32,8 @@ class Model {
   SceneStore& store() { return store_; }
   const SceneStore& store() const { return store_; }
 
+  void take(std::vector<Item>&& items);
+
   // After items came in: places them and builds the regions of definitions.  A definition that contains itself, or
   // nests deeper than kDeepest, is emptied and counted as left out.
   void prepare(const Exposure& exposure);
