@@ -51,7 +51,7 @@ Color traceRay(const Scene& scene, const Ray& ray, TraceCounts& counts) {
   for (std::size_t point = 0; point < spawned.lit.size(); ++point) {
     if (spawned.lit[point] != Lit::asked) continue;
     ++counts.shadowRays;
-    ShadowRay shadow = shadowRay(ray, at, scene.setting, point);
+    ShadowRay shadow = shadowRay(ray, at, spawned.samples[point]);
     const Progress way = followShadow(scene.tree, scene.model, scene, shadow, 0, scene.setting, counts);
     gathered.light[point] = way.state == Progress::State::hit ? kBlack : shadow.through;
   }
@@ -63,7 +63,7 @@ Color traceRay(const Scene& scene, const Ray& ray, TraceCounts& counts) {
     ++counts.reflectedRays;
     gathered.reflected = traceRay(scene, *spawned.reflected, counts);
   }
-  return combine(describe(ray, progress.hit.t, at, spawned, scene.setting), gathered, scene.setting);
+  return combine(describe(ray, progress.hit.t, at, spawned, scene.setting), gathered, scene.setting, spawned.samples);
 }
 
 FrameResult renderFrame(const Scene& scene, const View& view, const PictureSpec& picture, std::int32_t frame,

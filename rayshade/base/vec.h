@@ -32,11 +32,8 @@ constexpr Vec3 cross(Vec3 a, Vec3 b) {
 
 inline double maxAbs(Vec3 a) { return std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z)}); }
 
-// Length without overflow or underflow on the way: scaled by a power of two first when the squares would not
-// fit.
-inline double length(Vec3 a) {
-  const double squared = dot(a, a);
-  if (squared > 1e-280 && squared < 1e280) return std::sqrt(squared);
+// The length of a vector whose square does not fit: scaled by a power of two first.
+[[gnu::noinline]] inline double lengthOfExtreme(Vec3 a) {
   const double largest = maxAbs(a);
   if (!(largest > 0) || !std::isfinite(largest)) return largest;
   int exponent;
@@ -45,11 +42,20 @@ inline double length(Vec3 a) {
   return std::ldexp(std::sqrt(dot(scaled, scaled)), exponent);
 }
 
+// Length without overflow or underflow on the way.
+inline double length(Vec3 a) {
+  const double squared = dot(a, a);
+  return squared > 1e-280 && squared < 1e280 ? std::sqrt(squared) : lengthOfExtreme(a);
+}
+
 // A vector of length 1; the zero vector stays zero.
 inline Vec3 normalize(Vec3 a) {
-  const double l = length(a);
+  double l = length(a);
   if (!(l > 0)) return a;
-  if (l < 1e-300) return normalize(a * 0x1p+600);  // 1/l would overflow
+  if (l < 1e-300) [[unlikely]] {  // 1/l would overflow
+    a = a * 0x1p+600;
+    l = length(a);
+  }
   return a / l;
 }
 

@@ -17,7 +17,7 @@ AnyShape shapeOf(const SceneStore& store, const PlacedObject& object) {
 }  // namespace
 
 void Extract::addSurface(SurfaceId id, const Surface& surface) {
-  if (surfaces_.insert(number(id)).second) items.push_back(SurfaceItem{id, surface});
+  if (surfaces_.insert(number(id)).second) items.emplace_back(SurfaceItem{id, surface});
 }
 
 // Outermost first: a frame comes after its parent.
@@ -28,7 +28,7 @@ void Extract::addFrames(FrameIndex index) {
   addFrames(frame.parent);
   Frame copy = frame.frame;
   copy.surface = kNoSurface;  // objects come with the surface that binds them
-  items.push_back(FrameItem{frame.id, std::move(copy)});
+  items.emplace_back(FrameItem{frame.id, std::move(copy)});
 }
 
 void Extract::add(ObjectIndex index, DefinitionId container) {
@@ -52,7 +52,7 @@ void Extract::add(ObjectIndex index, DefinitionId container) {
   }
   if (used != kWorld && definitions_.insert(number(used)).second)
     for (ObjectIndex member : store_.objectsOf(used)) add(member, used);
-  items.push_back(std::move(object));
+  items.emplace_back(std::move(object));
 }
 
 }  // namespace rayshade

@@ -7,13 +7,14 @@ namespace rayshade {
 namespace {
 
 // Adds one point of a light (the shading model of the language reference, Phong 1975 without normalisation).
-Color addLight(Color sum, const Intersection& hit, const LightSample& sample, Color light) {
+// `reflected`: the ray's mirror direction.
+Color addLight(Color sum, const Intersection& hit, Vec3 reflected, Vec3 toward, Color light) {
   const Surface& surface = hit.surface;
-  const Vec3 reflected = mirrored(hit.direction, hit.normal);
-  const double along = dot(reflected, sample.toward);
-  const double cosine = lightCosine(sample.toward, hit.normal, hit.geometricNormal, hit.smooth);
+  const double along = dot(reflected, toward);
+  const double cosine = lightCosine(toward, hit.normal, hit.geometricNormal, hit.smooth);
   if (cosine > 0) {
     sum = sum + cosine * (surface.diffuse * light);
+    if (surface.specular == kBlack) return sum;  // spares a pow
     const double lobe = phongLobe(along, surface.specularPower);
     return lobe > 0 ? sum + lobe * (surface.specular * light) : sum;
   }
@@ -67,7 +68,9 @@ Intersection describe(const Ray& ray, double t, const SurfacePoint& at, const Se
   return hit;
 }
 
-Color combine(const Intersection& hit, const Gathered& gathered, const Setting& setting) {
+Color combine(const Intersection& hit, const Gathered& gathered, const Setting& setting,
+              const LightSamples& samples) {
+  const Vec3 reflected = mirrored(hit.direction, hit.normal);
   Color sum = hit.surface.ambient * setting.ambient;
   std::size_t end = hit.lit.size();  // of the points of the light that is being added
   for (std::size_t l = setting.lights.size(); l-- > 0;) {
@@ -80,8 +83,9 @@ Color combine(const Intersection& hit, const Gathered& gathered, const Setting& 
       if (hit.lit[p] == Lit::no) continue;
       const Color through = hit.lit[p] == Lit::asked ? gathered.light[p] : kWhite;
       if (through == kBlack) continue;
-      const LightSample sample = sampleLight(light, query, static_cast<int>(p - begin));
-      sum = addLight(sum, hit, sample, sample.factor * (light.color * through));
+      const LightSample sample =
+          samples.empty() ? sampleLight(light, query, static_cast<int>(p - begin)) : samples[p];
+      sum = addLight(sum, hit, reflected, sample.toward, sample.factor * (light.color * through));
     }
     end = begin;
   }

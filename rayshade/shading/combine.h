@@ -37,7 +37,9 @@ struct Gathered {
 Intersection describe(const Ray& ray, double t, const SurfacePoint& at, const Secondary& spawned,
                       const Setting& setting);
 
-Color combine(const Intersection& hit, const Gathered& gathered, const Setting& setting);
+// `samples`: Secondary::samples, if they are still at hand; else the lights are looked at again, with the same answers.
+Color combine(const Intersection& hit, const Gathered& gathered, const Setting& setting,
+              const LightSamples& samples = {});
 
 // The colour of a ray that meets nothing.
 Color missed(const Ray& ray, const Setting& setting);

@@ -65,7 +65,7 @@ const Surface& boundSurface(const Model& model, const HitPath& path) {
 SurfacePoint evaluateSurface(const Model& model, const Hit& hit, const Ray& ray, const Setting& setting) {
   const SceneStore& store = model.store();
   const HitPath path = pathTo(model, ray, hit);
-  const PathStep& last = path.steps.back();
+  const PathStep& last = path.steps[path.steps.size() - 1];
   ShapePoint shapePoint = withShape(store, store.object(last.object), [&](const auto& shape) {
     return shape.pointAt(last.ray, rootAt(model, last, hit.t));
   });

@@ -78,6 +78,7 @@ Secondary spawnSecondary(const Ray& ray, const SurfacePoint& at, const Setting& 
       const LightSample sample = sampleLight(light, query, i);
       const double cosine = lightCosine(sample.toward, at.normal, at.geometricNormal, at.smooth);
       const bool matters = sample.factor > 0 && answers(surface, cosine);
+      spawned.samples.push_back(sample);
       spawned.lit.push_back(!matters ? Lit::no : shadows ? Lit::asked : Lit::fully);
     }
   }
@@ -109,8 +110,12 @@ Secondary spawnSecondary(const Ray& ray, const SurfacePoint& at, const Setting& 
 ShadowRay shadowRay(const Ray& ray, const SurfacePoint& at, const Setting& setting, std::size_t point) {
   const LightPoint which = lightPoint(setting, point);
   const LightSource& light = setting.lights[which.light];
-  const LightSample sample =
-      sampleLight(light, lightQuery(at.position, ray.key, ray.sample, which.light, setting), which.index);
+  return shadowRay(
+      ray, at,
+      sampleLight(light, lightQuery(at.position, ray.key, ray.sample, which.light, setting), which.index));
+}
+
+ShadowRay shadowRay(const Ray& ray, const SurfacePoint& at, const LightSample& sample) {
   ShadowRay shadow;
   shadow.ray.origin = originOff(at, sample.shadowToward);
   shadow.ray.direction = sample.shadowToward;

@@ -23,6 +23,7 @@ enum class Lit : std::uint8_t {
 
 // The points of all lights in one row, lights in the order of the file.
 using LightStates = InlineVector<Lit, 8>;
+using LightSamples = InlineVector<LightSample, 8>;
 
 // A shadow ray: from a hit to a point of a light.
 struct ShadowRay {
@@ -36,6 +37,7 @@ struct ShadowRay {
 
 struct Secondary {
   LightStates lit;
+  LightSamples samples;  // what each point of a light looks like from here
   std::optional<Ray> transmitted, reflected;
   Color transmitWeight, reflectWeight;
 };
@@ -46,6 +48,8 @@ Secondary spawnSecondary(const Ray& ray, const SurfacePoint& at, const Setting& 
 
 // The shadow ray to light point `point` (a position in Secondary::lit whose state is `asked`).
 ShadowRay shadowRay(const Ray& ray, const SurfacePoint& at, const Setting& setting, std::size_t point);
+// The same when the light has been looked at already.
+ShadowRay shadowRay(const Ray& ray, const SurfacePoint& at, const LightSample& sample);
 
 // Which light, and which of its points, a position in the row means.
 struct LightPoint {

@@ -51,6 +51,10 @@ double insideExtent(const Bounds& extent, const LocalRay& ray, double t) {
   for (int axis = 0; axis < 3; ++axis) {
     const double direction = ray.direction[axis];
     if (direction == 0) continue;
+    // Well between the two sides: t is between theirs, and four divisions are spared.
+    const double step = t * direction, at = ray.origin[axis] + step;
+    const double error = kRounding * (std::abs(ray.origin[axis]) + std::abs(step));
+    if (at - error > extent.low[axis] && at + error < extent.high[axis]) continue;
     const double toLow = (extent.low[axis] - ray.origin[axis]) / direction;
     const double toHigh = (extent.high[axis] - ray.origin[axis]) / direction;
     entry = std::max(entry, std::min(toLow, toHigh));
@@ -68,7 +72,8 @@ std::optional<Polygon> Polygon::parse(Arguments& in) {
   if (polygon.corners.size() < 3) in.fail("a polygon has three corners or more");
   for (const Vec3& corner : polygon.corners)
     if (!(maxAbs(corner) < 0x1p+500)) return std::nullopt;
-  const double size = maxAbs(polygon.bounds().size());
+  polygon.prepare();
+  const double size = maxAbs(polygon.extent.size());
   if (!(size > 0x1p-480)) return std::nullopt;
   const Vec3 sum = newell(polygon.corners, size);
   // differs from rayshade4: a polygon may be as small as you like; only one whose area is rounding is not one.
@@ -81,23 +86,31 @@ std::optional<Polygon> Polygon::parse(Arguments& in) {
     polygon.bent = true;
     break;
   }
+  polygon.prepare();
   return polygon;
-}
-
-Bounds Polygon::bounds() const {
-  Bounds b;
-  for (const Vec3& corner : corners) b = join(b, corner);
-  return b;
 }
 
 double Polygon::intersect(const LocalRay& ray, double tMin) const {
   const double t = meetPlane(ray, corners[0], normal);
   if (!(std::abs(t) < kNoHit)) return kNoHit;
-  const bool inside = bent ? windsAround(corners, dropAxis(ray.origin + t * ray.direction, dominantAxis(normal)))
-                           : lookAlong(ray, [this](const auto& shear) { return windsAround(corners, shear); });
-  if (!inside) return kNoHit;
-  const double clipped = insideExtent(bounds(), ray, t);
+  if (!(bent ? windsAround(corners, dropAxis(ray.origin + t * ray.direction, dominantAxis(normal)))
+             : inside(ray, t)))
+    return kNoHit;
+  const double clipped = insideExtent(extent, ray, t);
   return clipped > tMin ? clipped : kNoHit;
+}
+
+bool Polygon::inside(const LocalRay& ray, double t) const {
+  if (outline)
+    if (const std::optional<bool> sure = outline->windsAround(ray, t)) return *sure;
+  return lookAlong(ray, [this](const auto& shear) { return windsAround(corners, shear); });
+}
+
+void Polygon::prepare() {
+  extent = {};
+  for (const Vec3& corner : corners) extent = join(extent, corner);
+  constexpr std::size_t kMany = 9;  // with fewer corners the exact test is as fast
+  if (corners.size() >= kMany && !bent) outline = std::make_shared<const Outline>(corners, normal);
 }
 
 ShapePoint Polygon::pointAt(const LocalRay& ray, double t) const {
@@ -105,6 +118,10 @@ ShapePoint Polygon::pointAt(const LocalRay& ray, double t) const {
   return {position, normal, normal, {}, kRounding * (maxAbs(position) + maxAbs(corners[0]))};
 }
 
-Polygon Polygon::flipped() const { return {{corners.rbegin(), corners.rend()}, -normal, bent}; }
+Polygon Polygon::flipped() const {
+  Polygon other{{corners.rbegin(), corners.rend()}, -normal, bent};
+  other.prepare();
+  return other;
+}
 
 }  // namespace rayshade

@@ -12,8 +12,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <memory>
 #include <vector>
 
+#include "rayshade/shapes/outline.h"
 #include "rayshade/shapes/shape.h"
 
 namespace rayshade {
@@ -22,6 +24,9 @@ struct Polygon {
   std::vector<Vec3> corners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   Vec3 normal{0, 0, 1};  // unit
   bool bent = false;     // the corners are visibly not in one plane
+  // What follows from these, see prepare().
+  Bounds extent{{0, 0, 0}, {1, 1, 0}};
+  std::shared_ptr<const Outline> outline = nullptr;  // of polygons with many corners
 
   static constexpr std::string_view keyword = "polygon";
   static constexpr bool closed = false;
@@ -29,7 +34,8 @@ struct Polygon {
 
   static std::optional<Polygon> parse(Arguments& in);
 
-  Bounds bounds() const;
+  void prepare();  // computes extent and outline
+  Bounds bounds() const { return extent; }
   double intersect(const LocalRay& ray, double tMin) const;
   ShapePoint pointAt(const LocalRay& ray, double t) const;
   SurfaceCoordinates coordinates(const ShapePoint&, Vec3 position) const {
@@ -40,6 +46,9 @@ struct Polygon {
   }
 
   Polygon flipped() const;  // for option -f
+
+ private:
+  bool inside(const LocalRay& ray, double t) const;
 };
 
 template <class Archive>
@@ -50,6 +59,7 @@ void serialize(Archive& archive, Polygon& p) {
       p = {};
       archive.fail();
     }
+    p.prepare();
   }
 }
 

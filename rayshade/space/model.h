@@ -9,6 +9,7 @@
 #include <memory>
 #include <vector>
 
+#include "rayshade/base/inline_vector.h"
 #include "rayshade/optics/ray.h"
 #include "rayshade/scene/store.h"
 #include "rayshade/space/bvh.h"
@@ -94,7 +95,7 @@ struct PathStep {
 // The steps from the world to the shape, outermost first; the last one is a shape.  `flipped` tells that a CSG
 // operation turned the surface around, `entering` what CSG says about the crossing, if it says anything.
 struct HitPath {
-  std::vector<PathStep> steps;
+  InlineVector<PathStep, 4> steps;
   std::optional<bool> entering;
 };
 HitPath pathTo(const Model& model, const Ray& ray, const Hit& hit);
