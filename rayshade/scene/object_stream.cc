@@ -117,6 +117,17 @@ void ObjectStream::hand(const SceneObject& object, const FrameItem* own) {
 void ObjectStream::settled() {
   Statement& statement = statement_;
   if (statement.spool.size() == 0) return;
+  // What definitions consist of is kept: their objects, and every frame that one of those can hang on.  This comes
+  // first: the consumer of an object asks for the definition that it uses, which can be of the same statement.
+  if (!statement.defined.empty()) {
+    const std::uint64_t begin = definitionSpool_.size();
+    readItems(statement.spool, 0, statement.spool.size(), [&](const Item& item) {
+      const SceneObject* object = std::get_if<SceneObject>(&item);
+      if (object == nullptr || object->container != kWorld) spool(item, definitionSpool_);
+    });
+    for (DefinitionId id : statement.defined)
+      definitions_[number(id)].pieces.emplace_back(begin, definitionSpool_.size() - begin);
+  }
   // The members of a definition come before its first use, so one pass in order knows the bounds of what it meets.
   FrameItem own;
   bool ownIsSet = false;
@@ -128,16 +139,6 @@ void ObjectStream::settled() {
       hand(*object, ownIsSet ? &own : nullptr);
     }
   });
-  // What definitions consist of is kept: their objects, and every frame that one of those can hang on.
-  if (!statement.defined.empty()) {
-    const std::uint64_t begin = definitionSpool_.size();
-    readItems(statement.spool, 0, statement.spool.size(), [&](const Item& item) {
-      const SceneObject* object = std::get_if<SceneObject>(&item);
-      if (object == nullptr || object->container != kWorld) spool(item, definitionSpool_);
-    });
-    for (DefinitionId id : statement.defined)
-      definitions_[number(id)].pieces.emplace_back(begin, definitionSpool_.size() - begin);
-  }
   statement.spool.clear();
   statement.late.clear();
   statement.defined.clear();
