@@ -1,0 +1,146 @@
+// The promise of the whole program: however the work is split and in whatever order messages arrive, the picture has the
+// bits of the sequential renderer's.
+//
+// RAYSHADE_TEST_SEEDS=N tries N random scenes instead of the few of every day.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include "tests/support/compare_pictures.h"
+#include "tests/support/random_scene.h"
+#include "tests/support/render_text.h"
+#include "tests/support/suite.h"
+
+namespace rayshade {
+namespace {
+
+struct Split {
+  std::uint32_t voxelTasks, voxelsPerTask, shades, window;
+  std::uint64_t delivery;
+};
+
+std::ostream& operator<<(std::ostream& out, const Split& s) {
+  return out << "--voxels " << s.voxelTasks << " --voxels-per-task " << s.voxelsPerTask << " --shades "
+             << s.shades << " --window " << s.window << ", delivery seed " << s.delivery;
+}
+
+Split randomSplit(std::uint64_t seed) {
+  const std::uint64_t bits = mixBits(seed);
+  constexpr std::uint32_t windows[] = {1, 7, 256, 4096};
+  return {1 + static_cast<std::uint32_t>(bits % 8), 1 + static_cast<std::uint32_t>(bits / 8 % 3),
+          1 + static_cast<std::uint32_t>(bits / 24 % 3), windows[bits / 72 % 4], bits / 288};
+}
+
+RenderedByTasks renderSplit(const Job& job, const Split& split) {
+  HostOptions host;
+  host.wishes = {split.voxelTasks, split.shades};
+  host.voxelsPerTask = split.voxelsPerTask;
+  host.window = split.window;
+  SimulatedMachine::Options machine;
+  machine.seed = split.delivery;
+  return renderByTasks(job, host, machine);
+}
+
+// Every ray is traced once wherever it is, so that the tasks together count what one process counts over the same
+// voxels.  With adaptive sampling the host guesses ahead: it may trace samples that are not needed in the end.
+void expectSameWork(const TraceCounts& sequential, const TraceCounts& tasks) {
+  EXPECT_EQ(tasks.visits, sequential.visits);
+  EXPECT_EQ(tasks.hits, sequential.hits);
+  EXPECT_EQ(tasks.shadowRays, sequential.shadowRays);
+  EXPECT_EQ(tasks.reflectedRays, sequential.reflectedRays);
+  EXPECT_EQ(tasks.transmittedRays, sequential.transmittedRays);
+}
+
+TEST(Equivalence, RandomScenesHaveTheSameBitsHoweverTheyAreSplit) {
+  const std::uint64_t seeds = numberFromEnvironment("RAYSHADE_TEST_SEEDS", 60);
+  std::uint64_t colourful = 0;
+  for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+    SCOPED_TRACE("scene seed " + std::to_string(seed));
+    const Job job = jobOfText(randomScene(seed));
+    const Rendered expected = renderSequentially(job);
+    for (std::uint64_t trial = 0; trial < 3; ++trial) {
+      const Split split = randomSplit(3 * seed + trial);
+      SCOPED_TRACE(split);
+      const RenderedByTasks got = renderSplit(job, split);
+      ASSERT_EQ(difference(got.frames, expected.frames), "");
+      ASSERT_EQ(got.summary.successions, 0);
+      for (const TaskSummary& task : got.summary.tasks) {
+        ASSERT_EQ(task.report.refused, 0u);
+        ASSERT_EQ(task.report.stale, 0u);
+      }
+    }
+    const std::vector<float>& pixels = expected.frames[0].pixels;
+    if (std::any_of(pixels.begin(), pixels.end(), [&](float p) { return p != pixels[0]; })) ++colourful;
+  }
+  EXPECT_GT(colourful, 9 * seeds / 10) << "the scenes show nothing: the test has lost its teeth";
+}
+
+TEST(Equivalence, TheTasksTogetherDoTheWorkOfOneProcessOverTheSameVoxels) {
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    SCOPED_TRACE("scene seed " + std::to_string(seed));
+    Job job = jobOfText(randomScene(seed));
+    job.options.samples = 1;  // no guesses
+    const Split split = randomSplit(1000 + seed);
+    SCOPED_TRACE(split);
+    const Rendered expected = renderSequentially(job, split.voxelTasks * split.voxelsPerTask);
+    const RenderedByTasks got = renderSplit(job, split);
+    ASSERT_EQ(difference(got.frames, expected.frames), "");
+    expectSameWork(expected.counts, got.counts);
+    EXPECT_EQ(difference(renderSequentially(job).frames, expected.frames), "")
+        << "cutting space has changed the picture";
+    std::uint64_t owned = 0;
+    for (const TaskSummary& task : got.summary.tasks) owned += task.owned;
+    EXPECT_EQ(owned, got.summary.objects) << "every object of the world is owned by one task";
+  }
+}
+
+TEST(Equivalence, EverySplitOfOneSceneHasTheSameBits) {
+  const Job job = jobOfText(randomScene(7));
+  const Rendered expected = renderSequentially(job);
+  std::uint64_t delivery = 0;
+  for (std::uint32_t voxels = 1; voxels <= 8; ++voxels)
+    for (std::uint32_t perTask = 1; perTask <= 3; ++perTask)
+      for (std::uint32_t shades = 1; shades <= 3; ++shades) {
+        const Split split{voxels, perTask, shades, delivery % 2 == 0 ? 7u : 256u, delivery};
+        ++delivery;
+        SCOPED_TRACE(split);
+        ASSERT_EQ(difference(renderSplit(job, split).frames, expected.frames), "");
+      }
+}
+
+TEST(Equivalence, TheSamplesOnTheirWayNeverExceedTheWindow) {
+  const Job job = jobOfText(randomScene(3));
+  for (std::uint32_t window : {1u, 7u, 64u}) {
+    const RenderedByTasks got = renderSplit(job, {4, 1, 2, window, window});
+    EXPECT_LE(got.summary.peakInFlight, window);
+    EXPECT_GT(got.summary.peakInFlight, window / 2);
+  }
+}
+
+TEST(Equivalence, ScenesOfTheSuiteHaveTheSameBits) {
+  std::uint64_t number = 0;
+  for (const SuiteScene& scene : suiteScenes()) {
+    SCOPED_TRACE(scene.name);
+    CurrentDirectory suite(kSuiteDirectory);
+    Job job = jobOf(scene.options + " " + scene.name + ".ray");
+    job.options.resolution = {40, 30};
+    job.options.window = {0, 39, 0, 29};
+    const Rendered expected = renderSequentially(job);
+    const Split split = randomSplit(5000 + number++);
+    SCOPED_TRACE(split);
+    EXPECT_EQ(difference(renderSplit(job, split).frames, expected.frames), "");
+    EXPECT_EQ(expected.frames.size(), static_cast<std::size_t>(scene.frames));
+  }
+  EXPECT_GE(number, 50u);
+}
+
+TEST(Equivalence, AnotherSeedOfTheSamplesIsAnotherPicture) {
+  Job job = jobOfText("screen 16 12 eyep 0 -5 0 sample 2 jitter contrast 0 0 0 sphere diffuse 1 1 1 1 0 0 0");
+  const Rendered first = renderSequentially(job);
+  job.options.seed = 1;
+  const Rendered second = renderSequentially(job);
+  EXPECT_NE(first.frames, second.frames);
+  EXPECT_EQ(difference(renderSplit(job, {3, 1, 1, 64, 0}).frames, second.frames), "");
+}
+
+}  // namespace
+}  // namespace rayshade

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tests/support/render_text.h"
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "rayshade/space/survey.h"
+
+namespace rayshade {
+
+SceneHead Job::read(SceneSink& sink) const {
+  SceneHead head =
+      text.empty() ? parseScene(options.parse, sink) : parseSceneText(text, "text", options.parse, sink);
+  applyOptions(options, head);
+  return head;
+}
+
+Job jobOf(const std::string& commandLine) {
+  Job job;
+  CLI::App app;
+  declareOptions(app, job.options);
+  app.parse(commandLine, false);
+  return job;
+}
+
+Job jobOfText(std::string text) {
+  Job job;
+  job.text = std::move(text);
+  return job;
+}
+
+Rendered renderSequentially(const Job& job, std::uint32_t voxels) {
+  Scene scene;
+  const SceneHead head = job.read(scene.model.store());
+  scene.setting = head.setting;
+  const View view = viewOf(head.camera, head.picture).value();
+  const PixelArea area = pixelArea(head.picture).value();
+  Rendered result;
+  const std::int32_t first = head.picture.firstFrame;
+  for (std::int32_t frame = first; frame < first + head.picture.frames; ++frame) {
+    scene.prepare(exposureOf(head.picture, frame), voxels);
+    Picture picture{area.width, area.height, {}};
+    const FrameResult done = renderFrame(scene, view, head.picture, frame, job.options.seed,
+                                         [&](const std::vector<Color>& row) { appendRow(picture, row); });
+    result.frames.push_back(std::move(picture));
+    result.counts = result.counts + done.counts;
+  }
+  result.objects = scene.model.store().objectCount();
+  return result;
+}
+
+RenderedByTasks renderByTasks(const Job& job, const HostOptions& hostOptions,
+                              const SimulatedMachine::Options& machineOptions,
+                              const std::function<void(SimulatedMachine&)>& prepare) {
+  SurveySink survey({});
+  const SceneHead head = job.read(survey);
+  const View view = viewOf(head.camera, head.picture).value();
+  const PixelArea area = pixelArea(head.picture).value();
+  SimulatedMachine machine(machineOptions);
+  if (prepare) prepare(machine);
+  HostOptions options = hostOptions;
+  options.seed = job.options.seed;
+  HostTask host(
+      machine, [&](SceneSink& sink) { job.read(sink); }, survey.survey(), head.setting, options);
+  RenderedByTasks result;
+  const std::int32_t first = head.picture.firstFrame;
+  for (std::int32_t frame = first; frame < first + head.picture.frames; ++frame) {
+    Picture picture{area.width, area.height, {}};
+    host.renderFrame(view, head.picture, frame,
+                     [&](const std::vector<Color>& row) { appendRow(picture, row); });
+    result.frames.push_back(std::move(picture));
+  }
+  result.summary = host.finish();
+  for (const TaskSummary& task : result.summary.tasks) result.counts = result.counts + task.report.counts;
+  result.moves = machine.moves();
+  result.deaths = machine.deaths();
+  result.peakQueue = machine.peakQueue();
+  return result;
+}
+
+CurrentDirectory::CurrentDirectory(const std::string& directory) : before_(std::filesystem::current_path()) {
+  std::filesystem::current_path(directory);
+}
+CurrentDirectory::~CurrentDirectory() {
+  std::error_code ignored;
+  std::filesystem::current_path(before_, ignored);
+}
+
+std::uint64_t numberFromEnvironment(const char* name, std::uint64_t otherwise) {
+  const char* const value = std::getenv(name);
+  return value != nullptr && *value != '\0' ? std::strtoull(value, nullptr, 10) : otherwise;
+}
+
+}  // namespace rayshade
