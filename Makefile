@@ -37,7 +37,7 @@ link_test := $(call objects,tests/parallel/link_test.cc)
 tests := $(filter-out $(pvm_tests) $(link_test),$(call objects,$(call find_sources,tests/unit tests/property tests/golden tests/parallel tests/fault tests/support)))
 benches := $(patsubst tests/bench/%.cc,$(BIN)/bench/%,$(call find_sources,tests/bench))
 
-roles := host voxel-trace shade
+roles := host voxel-trace pyramid-trace shade
 programs := $(BIN)/rayshade $(BIN)/spd $(roles:%=$(BIN)/rayshade-%)
 test_programs := $(BIN)/rayshade-tests $(BIN)/link-tests $(BIN)/pvm-tests
 
@@ -64,7 +64,7 @@ $(BIN)/spd: $(BUILD)/scenes/spd/main.o $(BUILD)/libspd.a
 $(BIN)/rayshade-host: $(pvm_programs) $(pvm_door) $(BUILD)/libtasks.a $(BUILD)/libcore.a
 	$(call link,-lpvm3)
 # The role of a task is the name under which it was started: one program, several names.
-$(BIN)/rayshade-voxel-trace $(BIN)/rayshade-shade: $(BIN)/rayshade-host
+$(BIN)/rayshade-voxel-trace $(BIN)/rayshade-pyramid-trace $(BIN)/rayshade-shade: $(BIN)/rayshade-host
 	ln -f $< $@
 $(BIN)/rayshade-tests: $(tests) $(BUILD)/libtasks.a $(BUILD)/libspd.a $(BUILD)/libcore.a
 	$(call link,-lgtest -lgtest_main -lpthread)

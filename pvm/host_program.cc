@@ -17,7 +17,45 @@ struct HostProgramOptions {
   Options render;
   HostOptions host;
   MachineOptions machine;
+  std::string schedule = "data";
+  std::optional<std::uint32_t> pyramids;
+  std::optional<std::string> horizon, shadows;
+  std::optional<double> cacheMegabytes;
 };
+
+// A schedule is a preset; what is said in detail counts more.
+void settleSchedule(HostProgramOptions& o, std::uint32_t hosts) {
+  HostOptions& host = o.host;
+  DemandPolicy& policy = host.policy;
+  if (o.schedule == "data") {
+    policy.shadows = ShadowPolicy::forward;
+  } else if (o.schedule == "hybrid") {
+    host.wishes.pyramids = hosts;
+  } else if (o.schedule == "pipelined") {
+    host.wishes.pyramids = 2 * hosts;
+    policy.horizon = {Horizon::Kind::cells, 1e9};
+  } else if (o.schedule == "demand") {
+    host.wishes.pyramids = 2 * hosts;
+    policy.horizon = {Horizon::Kind::cells, 1e9};
+    policy.shadows = ShadowPolicy::local;
+    policy.secondariesTravel = false;
+  }
+  if (o.pyramids) host.wishes.pyramids = *o.pyramids;
+  if (o.shadows) {
+    policy.shadows = *o.shadows == "forward" ? ShadowPolicy::forward
+                     : *o.shadows == "local" ? ShadowPolicy::local
+                                             : ShadowPolicy::automatic;
+  }
+  if (o.cacheMegabytes) policy.cacheBytes = static_cast<std::uint64_t>(*o.cacheMegabytes * 1e6);
+  if (o.horizon && *o.horizon != "auto") {
+    char* end = nullptr;
+    const double value = std::strtod(o.horizon->c_str(), &end);
+    const bool inCells = *end == 'c';
+    if (end == o.horizon->c_str() || end[inCells ? 1 : 0] != '\0' || !(value >= 0))
+      throw HostError("--horizon is auto, a number of cells (12c) or a distance (3.5), not " + *o.horizon);
+    policy.horizon = {inCells ? Horizon::Kind::cells : Horizon::Kind::distance, value};
+  }
+}
 
 void declareHostOptions(CLI::App& app, HostProgramOptions& o) {
   declareOptions(app, o.render);
@@ -30,6 +68,22 @@ void declareHostOptions(CLI::App& app, HostProgramOptions& o) {
       ->check(CLI::Range(1, 4096))->group(tasks);
   app.add_option("--voxels-per-task", o.host.voxelsPerTask, "voxels that each voxel-trace task holds")
       ->check(CLI::Range(1, 64))->group(tasks);
+  app.add_option("--pyramids", o.pyramids, "pyramid-trace tasks (default: by the schedule)")->check(CLI::Range(0, 4096))->group(tasks);
+  app.add_option("--clusters", o.host.wishes.clusters, "copies of the model, each distributed over voxel-trace tasks")
+      ->check(CLI::Range(1, 64))->group(tasks);
+  const std::string sharing = "What travels: rays or objects";
+  app.add_option("--schedule", o.schedule,
+                 "data: all rays travel; hybrid: primary and shadow rays are traced where they begin, with fetched cells; "
+                 "pipelined: more of that, farther; demand: every ray, nothing travels but objects")
+      ->check(CLI::IsMember({"data", "hybrid", "pipelined", "demand"}))->group(sharing);
+  app.add_option("--horizon", o.horizon, "how far pyramids go: auto, a number of cells (12c), a distance (3.5)")->group(sharing);
+  app.add_option("--shadows", o.shadows, "shadow rays: forward, local or auto")
+      ->check(CLI::IsMember({"forward", "local", "auto"}))->group(sharing);
+  app.add_option("--cache", o.cacheMegabytes, "object cache of each task, in MB")->check(CLI::PositiveNumber)->group(sharing);
+  app.add_option("--cells", o.host.cells, "cells of the bin-tree, about (default: by the size of the scene)")
+      ->check(CLI::Range(1, 1 << 22))->group(sharing);
+  app.add_option("--tile", o.host.tileSamples, "samples of a pyramid, at most")->check(CLI::Range(1, 65536))->group(sharing);
+  app.add_flag("--dynamic-shading", o.host.dynamicShading, "choose shade tasks by how busy they are")->group(tasks);
   app.add_option("--window", o.host.window, "samples on their way at a time")->check(CLI::Range(1, 1 << 24))->group(tasks);
   app.add_flag("--mixed", o.host.mixedArithmetic, "go on when hosts compute different bits")->group(tasks);
 }
@@ -47,8 +101,23 @@ void writeTable(std::FILE* to, const HostSummary& s, std::uint64_t pictureSum) {
     std::fprintf(to, "%-21s %-12.12s %9" PRIu64 " %9" PRIu64 " %10" PRIu64 " %9" PRIu64 " %9" PRIu64 " %8" PRIu64
                  " %8" PRIu64 " %7.1f %7.1f %7.2f %7.1f\n",
                  name.c_str(), task.placement.host.c_str(), task.objects,
-                 c.transmittedRays + c.reflectedRays + c.shadowRays, c.visits, c.hits, r.combined, r.messagesIn,
+                 c.primaryRays + c.transmittedRays + c.reflectedRays + c.shadowRays, c.visits, c.hits, r.combined, r.messagesIn,
                  r.messagesOut, megabytes(r.bytesIn), megabytes(r.bytesOut), r.busySeconds, megabytes(r.peakMemory));
+  }
+  for (const TaskSummary& task : s.tasks) {
+    const Report& r = task.report;
+    if (r.cache.asked == 0 && r.pyramids == 0) continue;
+    auto percent = [](std::uint64_t part, std::uint64_t whole) {
+      return whole == 0 ? 100.0 : 100.0 * static_cast<double>(part) / static_cast<double>(whole);
+    };
+    std::fprintf(to, "%s %u: cache %.2f %% hits (shadow rays %.2f %%), %" PRIu64 " cells fetched, %.2f MB, %" PRIu64 " thrown out",
+                 programName(task.placement.role) + 9, task.placement.index, percent(r.cache.hits, r.cache.asked),
+                 percent(r.shadowCache.hits, r.shadowCache.asked), r.cache.fetched, megabytes(r.cache.fetchedBytes),
+                 r.cache.evicted);
+    if (r.pyramids > 0)
+      std::fprintf(to, "; %" PRIu64 " pyramids, %" PRIu64 " of %" PRIu64 " rays went on to the voxels", r.pyramids,
+                   r.forwardedRays, r.pyramidRays);
+    std::fprintf(to, "\n");
   }
   double cpu = 0;
   for (const TaskSummary& task : s.tasks) cpu += task.report.cpuSeconds;
@@ -91,6 +160,7 @@ int run(HostProgramOptions& options) {
     std::fprintf(stderr, "rayshade-host: warning: host %s did not join\n", host.c_str());
   PvmLink link;
   options.host.seed = options.render.seed;
+  settleSchedule(options, static_cast<std::uint32_t>(link.hosts().size()));
   HostTask host(link, [&](SceneSink& sink) { parseScene(again, sink); }, survey, head.setting, options.host);
   Picture sum{area.width, area.height, {}};
   for (std::int32_t frame = first; frame < first + head.picture.frames; ++frame) {

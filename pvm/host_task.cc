@@ -4,6 +4,13 @@
 #include <algorithm>
 
 namespace rayshade {
+namespace {
+
+// With several clusters, so many samples in a row go to the same one.
+constexpr std::uint64_t kClusterRun = 64;
+constexpr double kLoadEvery = 0.2;  // seconds
+
+}  // namespace
 
 HostTask::HostTask(Machine& machine, SceneReader scene, const Survey& survey, const Setting& setting,
                    const HostOptions& options)
@@ -93,18 +100,24 @@ void HostTask::reconfigure() {
     startMissing();
     phase_ = Phase::shipping;
     directory_.voxelTasks.clear();
+    directory_.pyramidTasks.clear();
     directory_.shadeTasks.clear();
-    for (const Slave& slave : slaves_)
-      (slave.placement.role == Role::voxelTrace ? directory_.voxelTasks : directory_.shadeTasks).push_back(slave.task);
+    for (const Slave& slave : slaves_) {
+      (slave.placement.role == Role::voxelTrace     ? directory_.voxelTasks
+       : slave.placement.role == Role::pyramidTrace ? directory_.pyramidTasks
+                                                    : directory_.shadeTasks)
+          .push_back(slave.task);
+    }
+    directory_.shadeWeights.assign(directory_.shadeTasks.size(), 1);
     ship();
   } while (someoneDied_ || !configure());
   phase_ = Phase::rendering;
   summary_.startSeconds += machine_.now() - begin;
   // Samples that were on their way are issued again; they are pure, so the same bits come back.
   summary_.reissued += inFlight_.size();
-  std::vector<std::pair<std::uint64_t, SampleId>> again(inFlight_.begin(), inFlight_.end());
-  std::sort(again.begin(), again.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-  for (const auto& [serial, sample] : again) issue(serial, sample);
+  std::map<std::uint64_t, SampleId> inOrder(inFlight_.begin(), inFlight_.end());
+  inFlight_.clear();
+  for (const auto& [serial, sample] : inOrder) again_.push_back(sample);
 }
 
 void HostTask::surveyAgain() {
@@ -117,7 +130,7 @@ void HostTask::surveyAgain() {
 
 // Reads the scene once for all tasks that have no items.
 void HostTask::ship() {
-  std::set<std::uint32_t> targets;
+  std::set<std::uint32_t> targets;  // numbers of voxel tasks, over all clusters
   std::uint32_t number = 0;
   std::vector<std::size_t> slaveOf;
   for (std::size_t i = 0; i < slaves_.size(); ++i) {
@@ -131,8 +144,16 @@ void HostTask::ship() {
   }
   if (targets.empty()) return;
   Shipping* shipping = nullptr;
+  cellBytes_.assign(cellCount(tree_), 0);
+  std::vector<CellId> cells;
   ObjectStream stream(exposure_, [&](const SceneObject& object, const Bounds& bounds,
-                                     std::span<const FrameItem* const> frames) { shipping->object(object, bounds, frames); });
+                                     std::span<const FrameItem* const> frames) {
+    cells.clear();
+    cellsTouching(tree_, bounds, cells);
+    const auto bytes = static_cast<std::uint32_t>(Shipping::bytesOf(object));
+    for (CellId cell : cells) cellBytes_[static_cast<std::size_t>(cell)] += bytes;
+    shipping->object(object, bounds, frames);
+  });
   Shipping pass(stream, tree_, directory_, targets, [&](std::uint32_t task, Items&& batch) {
     Slave& slave = slaves_[slaveOf[task]];
     while (slave.task != kNobody && slave.batchesOut >= Shipping::kBatches) takeEvents(1);
@@ -154,11 +175,12 @@ bool HostTask::configure() {
   epoch_ = Epoch{static_cast<std::uint32_t>(epoch_) + 1};
   ++summary_.epochs;
   outbox_.beginEpoch(epoch_);
-  std::uint32_t voxelNumber = 0, shadeNumber = 0;
+  wanting_.clear();
   for (Slave& slave : slaves_) {
     slave.ready = false;
-    std::uint32_t& number = slave.placement.role == Role::voxelTrace ? voxelNumber : shadeNumber;
-    outbox_.post(slave.task, Configure{epoch_, setting_, tree_, directory_, number++, exposure_});
+    outbox_.post(slave.task, Configure{epoch_, setting_, tree_, directory_, slave.placement.index, exposure_,
+                                       options_.policy, {*view_, *picture_, options_.seed}, cellBytes_,
+                                       options_.dynamicShading ? kLoadEvery : 0.0});
   }
   outbox_.flush();
   std::vector<TaskId> peers;
@@ -255,26 +277,72 @@ void HostTask::on(TaskId, Answer message) {
   inFlight_.erase(found);
 }
 
-// ---- the picture
+void HostTask::on(TaskId from, PyramidWanted) { wanting_.push_back(from); }
 
-void HostTask::issue(std::uint64_t serial, const SampleId& sample) {
-  const SamplePosition position =
-      samplePosition(*picture_, options_.seed, static_cast<std::uint32_t>(exposure_.frame), sample);
-  RayTask task{primaryRay(*view_, position, exposure_.frame), 0, {machine_.self(), serial, 0}};
-  VoxelWalk walk(tree_, task.ray.origin, task.ray.direction);
-  WalkStep<VoxelId> first;
-  walk.next(first);
-  outbox_.post(directory_.ownerOf(first.where), task);
+void HostTask::on(TaskId from, Load message) {
+  if (Slave* slave = find(from)) slave->busy = message.busy;
 }
 
-void HostTask::fillWindow() {
+// Dynamic placement of shading: the less a shade task's machine has to do, the more intersections it gets.
+void HostTask::sendWeights() {
+  const double now = machine_.now();
+  if (now - weighed_ < kLoadEvery) return;
+  weighed_ = now;
+  std::map<std::string, double> busy;  // by machine
+  for (const Slave& slave : slaves_) busy[slave.placement.host] += slave.busy;
+  Weights weights{epoch_, {}};
+  for (const Slave& slave : slaves_) {
+    if (slave.placement.role != Role::shade) continue;
+    const double load = busy[slave.placement.host] + 2 * slave.busy;
+    weights.shadeWeights.push_back(static_cast<std::uint32_t>(1000 / (0.1 + load)));
+  }
+  for (const Slave& slave : slaves_)
+    if (slave.placement.role != Role::shade && slave.task != kNobody) outbox_.post(slave.task, weights);
+}
+
+// ---- the picture
+
+bool HostTask::nextSample(SampleId& sample) {
+  if (inFlight_.size() >= options_.window) return false;
+  if (!again_.empty()) {
+    sample = again_.front();
+    again_.pop_front();
+    return true;
+  }
+  return sampler_->next(sample);
+}
+
+// Data driven: every ray to the task of the voxel in which it begins.
+void HostTask::issueRays() {
   SampleId sample;
-  while (inFlight_.size() < options_.window && sampler_->next(sample)) {
+  while (nextSample(sample)) {
     const std::uint64_t serial = serial_++;
     inFlight_.emplace(serial, sample);
-    issue(serial, sample);
+    const SamplePosition position =
+        samplePosition(*picture_, options_.seed, static_cast<std::uint32_t>(exposure_.frame), sample);
+    RayTask task{primaryRay(*view_, position, exposure_.frame), 0, {machine_.self(), serial, 0}};
+    VoxelWalk walk(tree_, task.ray.origin, task.ray.direction);
+    WalkStep<VoxelId> first;
+    walk.next(first);
+    const auto cluster = static_cast<std::uint32_t>(serial / kClusterRun % directory_.clusters);
+    outbox_.post(directory_.ownerOf(first.where, cluster), task);
   }
-  summary_.peakInFlight = std::max<std::uint64_t>(summary_.peakInFlight, inFlight_.size());
+}
+
+// Demand driven: a tile for each pyramid task that asked.
+void HostTask::issuePyramids() {
+  while (!wanting_.empty()) {
+    PyramidWork work;
+    work.firstRecord = serial_;
+    SampleId sample;
+    while (work.samples.size() < options_.tileSamples && nextSample(sample)) {
+      inFlight_.emplace(serial_++, sample);
+      work.samples.push_back(sample);
+    }
+    if (work.samples.empty()) return;
+    outbox_.post(wanting_.front(), work);
+    wanting_.pop_front();
+  }
 }
 
 void HostTask::renderFrame(const View& view, const PictureSpec& picture, std::int32_t frame,
@@ -286,15 +354,24 @@ void HostTask::renderFrame(const View& view, const PictureSpec& picture, std::in
   if (survey_.moves) surveyAgain();
   const auto voxelTasks = static_cast<std::uint32_t>(
       std::count_if(slaves_.begin(), slaves_.end(), [](const Slave& s) { return s.placement.role == Role::voxelTrace; }));
-  const std::uint32_t voxels = voxelTasks * std::max(1u, options_.voxelsPerTask);
-  tree_ = buildBinTree(survey_.world, {.voxels = voxels});
+  directory_.clusters = std::max(1u, options_.wishes.clusters);
+  const std::uint32_t perCluster = voxelTasks / directory_.clusters;
+  const std::uint32_t voxels = perCluster * std::max(1u, options_.voxelsPerTask);
+  // A cell is what is fetched at a time: small enough to be a part, large enough to be worth a message.
+  constexpr std::uint64_t kObjectsPerCell = 128;
+  const auto bySize = static_cast<std::uint32_t>(std::min<std::uint64_t>(survey_.objects / kObjectsPerCell, 1 << 16));
+  const bool fetches = !directory_.pyramidTasks.empty() || options_.wishes.pyramids > 0 ||
+                       options_.policy.shadows != ShadowPolicy::forward;
+  const std::uint32_t cells = options_.cells > 0 ? options_.cells : fetches ? bySize : voxels;
+  tree_ = buildBinTree(survey_.world, {.voxels = voxels, .cells = std::max(cells, voxels)}, survey_.density);
   directory_.voxels.clear();
-  for (std::uint32_t voxel = 0; voxel < voxels; ++voxel) directory_.voxels.push_back(voxel % voxelTasks);
+  for (std::uint32_t voxel = 0; voxel < voxels; ++voxel) directory_.voxels.push_back(voxel % perCluster);
   for (Slave& slave : slaves_) slave.hasItems = false;
 
   Sampler sampler(picture, options_.seed, static_cast<std::uint32_t>(frame));
   sampler_ = &sampler;
   inFlight_.clear();
+  again_.clear();
   reconfigure();
   const double begin = machine_.now();
   Progress state{0, sampler.area().height, 0};
@@ -306,7 +383,13 @@ void HostTask::renderFrame(const View& view, const PictureSpec& picture, std::in
     }
     if (sampler.finished()) break;
     if (someoneDied_) reconfigure();
-    fillWindow();
+    if (directory_.pyramidTasks.empty()) {
+      issueRays();
+    } else {
+      issuePyramids();
+    }
+    summary_.peakInFlight = std::max<std::uint64_t>(summary_.peakInFlight, inFlight_.size());
+    if (options_.dynamicShading) sendWeights();
     state.samples = sampler.counts().given;
     if (progress) progress(state);
     takeEvents(1);

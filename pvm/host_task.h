@@ -10,6 +10,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <deque>
 #include <functional>
 #include <map>
 #include <stdexcept>
@@ -19,7 +20,7 @@
 #include "pvm/shipping.h"
 #include "rayshade/image/sampler.h"
 #include "rayshade/render.h"
-#include "rayshade/scene/survey.h"
+#include "rayshade/space/survey.h"
 
 namespace rayshade {
 
@@ -27,6 +28,10 @@ struct HostOptions {
   Wishes wishes;
   std::uint32_t voxelsPerTask = 1;
   std::uint32_t window = 4096;      // samples on their way
+  std::uint32_t cells = 0;          // of the bin-tree, about; 0: by the size of the scene
+  std::uint32_t tileSamples = 256;  // of a pyramid, at most
+  DemandPolicy policy;
+  bool dynamicShading = false;      // shade tasks chosen by how busy they are
   std::uint64_t seed = 0;
   bool mixedArithmetic = false;     // go on when hosts compute different bits
   int mostSuccessions = 100;        // deaths after which the render is given up
@@ -61,7 +66,7 @@ struct HostSummary {
 
 class HostTask {
  public:
-  using Accepted = TypeList<ItemsTaken, Ready, Report, Pong, Answer>;
+  using Accepted = TypeList<ItemsTaken, Ready, Report, Pong, Load, Answer, PyramidWanted>;
   // Reads the scene once more, from the beginning, into a sink.
   using SceneReader = std::function<void(SceneSink&)>;
   struct Progress {
@@ -86,6 +91,8 @@ class HostTask {
   void on(TaskId from, Report message);
   void on(TaskId from, Pong);
   void on(TaskId from, Answer message);
+  void on(TaskId from, PyramidWanted);
+  void on(TaskId from, Load message);
 
  private:
   enum class Phase : std::uint8_t { shipping, configuring, rendering, finishing };
@@ -99,6 +106,7 @@ class HostTask {
     bool asked = false;     // a Ping is out
     TaskSummary summary;
     bool reported = false;
+    double busy = 0;        // share of its time, as it said last
   };
 
   void surveyAgain();
@@ -107,11 +115,13 @@ class HostTask {
   bool startMissing();
   void ship();
   bool configure();
-  void issue(std::uint64_t serial, const SampleId& sample);
-  void fillWindow();
+  bool nextSample(SampleId& sample);
+  void issueRays();
+  void issuePyramids();
   void handle(const LinkEvent& event);
   void takeEvents(double patience);
   void lookAfterSilent();
+  void sendWeights();
   void lost(Slave& slave);
   Slave* find(TaskId task);
   template <class M>
@@ -138,6 +148,10 @@ class HostTask {
   const PictureSpec* picture_ = nullptr;
   Sampler* sampler_ = nullptr;
   std::unordered_map<std::uint64_t, SampleId> inFlight_;  // by serial number
+  std::deque<SampleId> again_;                            // were on their way when something died
+  std::deque<TaskId> wanting_;                            // pyramid tasks that asked for work
+  std::vector<std::uint32_t> cellBytes_;
+  double weighed_ = 0;                                    // when the weights of shade tasks were sent last
   std::uint64_t serial_ = 0;
   HostSummary summary_;
 };

@@ -2,6 +2,7 @@
 //
 //   rayshade-host            from a shell or from the pvm console
 //   rayshade-voxel-trace     spawned by the host
+//   rayshade-pyramid-trace   spawned by the host
 //   rayshade-shade           spawned by the host
 //
 // SPDX-License-Identifier: BSD-3-Clause
@@ -12,6 +13,7 @@
 #include "pvm/event_loop.h"
 #include "pvm/host_program.h"
 #include "pvm/pvm_link.h"
+#include "pvm/pyramid_task.h"
 #include "pvm/shade_task.h"
 #include "pvm/voxel_task.h"
 
@@ -40,6 +42,7 @@ int main(int argc, char** argv) {
   try {
     if (name == programName(Role::host)) return runHostProgram(argc, argv);
     if (name == programName(Role::voxelTrace)) return runSlave<VoxelTask>();
+    if (name == programName(Role::pyramidTrace)) return runSlave<PyramidTask>();
     if (name == programName(Role::shade)) return runSlave<ShadeTask>();
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%.*s: %s\n", static_cast<int>(name.size()), name.data(), error.what());

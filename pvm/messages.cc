@@ -6,10 +6,22 @@
 
 namespace rayshade {
 
-bool isComplete(const Directory& directory, const BinTree& tree) {
-  if (directory.voxels.size() != voxelCount(tree) || directory.shadeTasks.empty()) return false;
-  return std::all_of(directory.voxels.begin(), directory.voxels.end(),
-                     [&](std::uint32_t task) { return task < directory.voxelTasks.size(); });
+bool isComplete(const Directory& d, const BinTree& tree) {
+  if (d.clusters == 0 || d.voxelTasks.empty() || d.voxelTasks.size() % d.clusters != 0) return false;
+  if (d.voxels.size() != voxelCount(tree) || d.shadeTasks.empty()) return false;
+  if (d.shadeWeights.size() != d.shadeTasks.size()) return false;
+  return std::all_of(d.voxels.begin(), d.voxels.end(),
+                     [&](std::uint32_t task) { return task < d.tasksPerCluster(); });
+}
+
+TaskId chooseShadeTask(const Directory& directory, RecordId record) {
+  std::uint64_t sum = 0;
+  for (std::uint32_t weight : directory.shadeWeights) sum += weight;
+  if (sum == 0) return directory.shadeTasks[record % directory.shadeTasks.size()];
+  std::uint64_t at = mixBits(record) % sum;
+  std::size_t i = 0;
+  while (at >= directory.shadeWeights[i]) at -= directory.shadeWeights[i++];
+  return directory.shadeTasks[i];
 }
 
 std::uint64_t arithmeticFingerprint() {

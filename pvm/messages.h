@@ -7,7 +7,10 @@
 #pragma once
 
 #include "pvm/link.h"
+#include "pvm/object_cache.h"
 #include "rayshade/base/type_list.h"
+#include "rayshade/image/sampler.h"
+#include "rayshade/scene/camera.h"
 #include "rayshade/scene/items.h"
 #include "rayshade/scene/store.h"
 #include "rayshade/shading/combine.h"
@@ -31,16 +34,51 @@ struct ReplyTo {
   Slot slot = 0;
 };
 
-// Who is who in an epoch.
+// Who is who in an epoch.  With K clusters the model is there K times, distributed within each; rays never leave their
+// cluster, only colours do (Reinhard & Jansen, section 6).
 struct Directory {
-  std::vector<TaskId> voxelTasks;     // by the number of the task among voxel tasks
-  std::vector<std::uint32_t> voxels;  // by voxel: which of voxelTasks has it
+  std::vector<TaskId> voxelTasks;     // one cluster after the other, all of the same size
+  std::uint32_t clusters = 1;
+  std::vector<std::uint32_t> voxels;  // by voxel: which task of a cluster has it
+  std::vector<TaskId> pyramidTasks;   // task i belongs to cluster i modulo `clusters`
   std::vector<TaskId> shadeTasks;
+  std::vector<std::uint32_t> shadeWeights;  // in what proportion they are chosen
 
-  TaskId ownerOf(VoxelId voxel) const { return voxelTasks[voxels[static_cast<std::size_t>(voxel)]]; }
+  std::uint32_t tasksPerCluster() const { return static_cast<std::uint32_t>(voxelTasks.size()) / clusters; }
+  TaskId ownerOf(VoxelId voxel, std::uint32_t cluster) const {
+    return voxelTasks[cluster * tasksPerCluster() + voxels[static_cast<std::size_t>(voxel)]];
+  }
 };
-// Does every voxel of the tree have an owner?
+// Does it fit together, and has every voxel of the tree an owner?
 bool isComplete(const Directory& directory, const BinTree& tree);
+
+// The shade task for an intersection: any choice gives the same picture.
+TaskId chooseShadeTask(const Directory& directory, RecordId record);
+
+// How work is shared out between rays that travel and objects that do.
+enum class ShadowPolicy : std::uint8_t {
+  forward,    // shadow rays travel to the voxels, like all others
+  local,      // they are traced where the hit was found, with cells of others fetched into a cache
+  automatic,  // per light: whichever is expected to move fewer bytes
+};
+struct Horizon {
+  enum class Kind : std::uint8_t { cells, distance, automatic } kind = Kind::automatic;
+  double value = 0;  // cells, or world units from the eye
+};
+struct DemandPolicy {
+  ShadowPolicy shadows = ShadowPolicy::automatic;
+  Horizon horizon;
+  bool secondariesTravel = true;        // false: pyramid tasks trace secondary rays too, with what they fetch
+  std::uint64_t cacheBytes = 64 << 20;  // of each task
+  std::uint32_t outstanding = 64;       // cells asked for at a time
+};
+
+// What pyramid tasks need to make rays of samples.
+struct Exhibition {
+  View view;
+  PictureSpec picture;
+  std::uint64_t seed = 0;
+};
 
 // ---- facts
 
@@ -69,6 +107,10 @@ struct Configure {
   Directory directory;
   std::uint32_t number = 0;  // of the receiver among the tasks of its role
   Exposure exposure;
+  DemandPolicy policy;
+  Exhibition exhibition;
+  std::vector<std::uint32_t> cellBytes;  // by cell: what its objects take on the wire; 0: there are none
+  double loadEvery = 0;                  // seconds between two Loads; 0: none
 };
 
 struct Ready {
@@ -78,6 +120,17 @@ struct Ready {
   std::uint64_t objects = 0;     // that the task holds
   std::uint64_t owned = 0;       // of those, the ones whose lowest corner lies in its voxels: they add up to the scene
   std::uint64_t leftOut = 0;     // items that did not fit together
+};
+
+// How busy a task is, a few times a second, when shading is placed dynamically; and what follows from it.
+struct Load {
+  static constexpr bool isFact = true;
+  double busy = 0;  // share of the time since the last one
+};
+struct Weights {
+  static constexpr bool isFact = true;
+  Epoch epoch{};
+  std::vector<std::uint32_t> shadeWeights;
 };
 
 // The end: answer Report and leave.
@@ -96,6 +149,12 @@ struct Report {
   std::uint64_t modelBytes = 0;   // its share of the scene, with accelerators
   std::uint64_t peakMemory = 0;   // of the process, bytes
   double busySeconds = 0, idleSeconds = 0, cpuSeconds = 0;
+  CacheCounts cache;
+  CacheCounts shadowCache;          // of those, what shadow rays asked for (look-ups only)
+  std::uint64_t pyramids = 0;       // traced
+  std::uint64_t pyramidRays = 0;    // primary rays in them
+  std::uint64_t forwardedRays = 0;  // of those, the ones that went over to the voxels
+  std::uint64_t cellsServed = 0;
 };
 
 struct Ping {
@@ -133,6 +192,29 @@ struct Expect {
   ReplyTo to;
 };
 
+// From a pyramid task: it could do with a pyramid.
+struct PyramidWanted {
+  static constexpr bool isFact = false;
+};
+
+// To a pyramid task: the samples of a tile.  Sample i is record firstRecord + i of the host.
+struct PyramidWork {
+  static constexpr bool isFact = false;
+  RecordId firstRecord = 0;
+  std::vector<SampleId> samples;
+};
+
+// From a task that traces with fetched cells, to the owner of the cell's voxel; and back.
+struct CellWanted {
+  static constexpr bool isFact = false;
+  CellId cell{};
+};
+struct CellItems {
+  static constexpr bool isFact = false;
+  CellId cell{};
+  std::vector<Item> items;
+};
+
 // A colour comes home.
 struct Answer {
   static constexpr bool isFact = false;
@@ -143,7 +225,7 @@ struct Answer {
 
 // Append only: the position is the tag.
 using AllMessages = TypeList<Forget, Items, ItemsTaken, Configure, Ready, Finish, Report, Ping, Pong, RayTask,
-                             ShadowTask, Expect, Answer>;
+                             ShadowTask, Expect, Answer, PyramidWanted, PyramidWork, CellWanted, CellItems, Load, Weights>;
 
 inline constexpr std::uint8_t kWireVersion = 1;
 
@@ -157,7 +239,19 @@ void serialize(Archive& archive, ReplyTo& r) {
 }
 template <class Archive>
 void serialize(Archive& archive, Directory& d) {
-  archive(d.voxelTasks, d.voxels, d.shadeTasks);
+  archive(d.voxelTasks, d.clusters, d.voxels, d.pyramidTasks, d.shadeTasks, d.shadeWeights);
+}
+template <class Archive>
+void serialize(Archive& archive, Horizon& h) {
+  archive(h.kind, h.value);
+}
+template <class Archive>
+void serialize(Archive& archive, DemandPolicy& p) {
+  archive(p.shadows, p.horizon, p.secondariesTravel, p.cacheBytes, p.outstanding);
+}
+template <class Archive>
+void serialize(Archive& archive, Exhibition& e) {
+  archive(e.view, e.picture, e.seed);
 }
 template <class Archive>
 void serialize(Archive&, Forget&) {}
@@ -173,7 +267,7 @@ void serialize(Archive& archive, Exposure& e) {
 }
 template <class Archive>
 void serialize(Archive& archive, Configure& m) {
-  archive(m.epoch, m.setting, m.tree, m.directory, m.number, m.exposure);
+  archive(m.epoch, m.setting, m.tree, m.directory, m.number, m.exposure, m.policy, m.exhibition, m.cellBytes, m.loadEvery);
 }
 template <class Archive>
 void serialize(Archive& archive, Ready& m) {
@@ -184,7 +278,8 @@ void serialize(Archive&, Finish&) {}
 template <class Archive>
 void serialize(Archive& archive, Report& m) {
   archive(m.counts, m.combined, m.messagesIn, m.messagesOut, m.packetsIn, m.packetsOut, m.bytesIn, m.bytesOut,
-          m.refused, m.stale, m.peakQueue, m.modelBytes, m.peakMemory, m.busySeconds, m.idleSeconds, m.cpuSeconds);
+          m.refused, m.stale, m.peakQueue, m.modelBytes, m.peakMemory, m.busySeconds, m.idleSeconds, m.cpuSeconds, m.cache,
+          m.shadowCache, m.pyramids, m.pyramidRays, m.forwardedRays, m.cellsServed);
 }
 template <class Archive>
 void serialize(Archive&, Ping&) {}
@@ -213,6 +308,28 @@ void serialize(Archive& archive, Expect& m) {
   } else {
     for (Color& color : m.known) serializeCompact(archive, color);
   }
+}
+template <class Archive>
+void serialize(Archive&, PyramidWanted&) {}
+template <class Archive>
+void serialize(Archive& archive, PyramidWork& m) {
+  archive(m.firstRecord, m.samples);
+}
+template <class Archive>
+void serialize(Archive& archive, CellWanted& m) {
+  archive(m.cell);
+}
+template <class Archive>
+void serialize(Archive& archive, CellItems& m) {
+  archive(m.cell, m.items);
+}
+template <class Archive>
+void serialize(Archive& archive, Load& m) {
+  archive(m.busy);
+}
+template <class Archive>
+void serialize(Archive& archive, Weights& m) {
+  archive(m.epoch, m.shadeWeights);
 }
 template <class Archive>
 void serialize(Archive& archive, Answer& m) {

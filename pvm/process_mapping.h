@@ -1,10 +1,12 @@
 // Which task runs where (Reinhard & Jansen, figure 6).
 //
-// A pure function of the hosts and of what is wished for: every task of a role goes to the host where least work per speed
-// has been placed so far, voxel-trace tasks first because they are the heaviest, then shade tasks, "on those
-// processors where due to the tracing processes, the load is expected to be low".  The host task's own machine comes
-// first in the list and carries its work.  The successor of a dead task comes from the same function without the
-// dead host.
+// A pure function of the hosts and of what is wished for.  Every task goes to the host where, with it, least work per
+// speed is expected:
+//   - pyramid-trace tasks first, on the host task's own machine while a processor is expected to be free there: "scheduled
+//     to processors that are located close to the host processor";
+//   - voxel-trace tasks spread over all hosts, cluster by cluster;
+//   - shade tasks last, "on those processors where due to the tracing processes, the load is expected to be low".
+// The successor of a dead task comes from the same function without the dead host.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -13,8 +15,10 @@
 namespace rayshade {
 
 struct Wishes {
-  std::uint32_t voxels = 0;  // voxel-trace tasks; 0: two per host
-  std::uint32_t shades = 0;  // shade tasks; 0: one per four voxel-trace tasks, at least one
+  std::uint32_t voxels = 0;    // voxel-trace tasks of each cluster; 0: two per host, shared among the clusters
+  std::uint32_t pyramids = 0;  // pyramid-trace tasks
+  std::uint32_t shades = 0;    // shade tasks; 0: one per four voxel-trace tasks, at least one
+  std::uint32_t clusters = 1;  // copies of the model
 };
 
 struct Placement {

@@ -6,6 +6,7 @@ namespace rayshade {
 void ShadeTask::on(TaskId from, Configure message) {
   desk_.outbox.beginEpoch(message.epoch);
   desk_.epoch = message.epoch;
+  desk_.reportLoad(from, message.loadEvery);
   setting_ = std::move(message.setting);
   ledger_.begin(lightPointCount(setting_));
   desk_.link.connect(message.directory.voxelTasks);

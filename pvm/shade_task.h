@@ -18,7 +18,7 @@ class ShadeTask {
 
   void receive(const LinkEvent& event) { receiveEvent(*this, desk_, event); }
   bool work(double) { return false; }  // all of it is done as messages come
-  void flush() { desk_.outbox.flush(); }
+  void flush() { desk_.flush(); }
   bool finished() const { return desk_.finished; }
   void noteIdle(double seconds) { desk_.idleSeconds += seconds; }
 

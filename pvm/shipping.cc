@@ -61,8 +61,11 @@ void Shipping::object(const SceneObject& object, const Bounds& bounds, std::span
   voxelsTouching(tree_, bounds, touched_);
   std::vector<std::uint32_t> tasks;
   for (VoxelId voxel : touched_) {
-    const std::uint32_t task = directory_.voxels[static_cast<std::size_t>(voxel)];
-    if (targets_.contains(task) && std::find(tasks.begin(), tasks.end(), task) == tasks.end()) tasks.push_back(task);
+    for (std::uint32_t cluster = 0; cluster < directory_.clusters; ++cluster) {
+      const std::uint32_t task =
+          cluster * directory_.tasksPerCluster() + directory_.voxels[static_cast<std::size_t>(voxel)];
+      if (targets_.contains(task) && std::find(tasks.begin(), tasks.end(), task) == tasks.end()) tasks.push_back(task);
+    }
   }
   for (std::uint32_t task : tasks) {
     for (const FrameItem* frame : frames) addFrame(task, *frame);

@@ -28,6 +28,9 @@ class Shipping {
   Shipping(ObjectStream& stream, const BinTree& tree, const Directory& directory, std::set<std::uint32_t> targets,
            Send send);
 
+  // What an object takes on the wire, without what it refers to.
+  static std::size_t bytesOf(const SceneObject& object) { return encode(object).size(); }
+
   void object(const SceneObject& object, const Bounds& bounds, std::span<const FrameItem* const> frames);
   void finish();  // sends what is left
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "pvm/pyramid_task.h"
 #include "pvm/shade_task.h"
 #include "pvm/voxel_task.h"
 
@@ -76,6 +77,7 @@ Spawned SimulatedMachine::spawn(Role role, const std::string& host) {
   auto running = std::make_unique<Running>(*this, id, host);
   switch (role) {
     case Role::voxelTrace: running->task = std::make_unique<SlaveOf<VoxelTask>>(running->link); break;
+    case Role::pyramidTrace: running->task = std::make_unique<SlaveOf<PyramidTask>>(running->link); break;
     case Role::shade: running->task = std::make_unique<SlaveOf<ShadeTask>>(running->link); break;
     default: return {kNobody, std::string("no such program: ") + programName(role)};
   }

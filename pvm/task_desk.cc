@@ -3,7 +3,21 @@
 
 #include <sys/resource.h>
 
+#include <algorithm>
+
 namespace rayshade {
+
+void TaskDesk::flush() {
+  if (loadEvery_ > 0) {
+    const double now = link.now(), span = now - loadSent_;
+    if (span >= loadEvery_) {
+      outbox.post(loadTo_, Load{std::clamp(1 - (idleSeconds - idleThen_) / span, 0.0, 1.0)});
+      loadSent_ = now;
+      idleThen_ = idleSeconds;
+    }
+  }
+  outbox.flush();
+}
 
 Report TaskDesk::report() const {
   Report report;

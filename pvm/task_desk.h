@@ -17,6 +17,13 @@ class TaskDesk {
   std::uint64_t peakQueue = 0;
   double idleSeconds = 0;
 
+  // Tells the host how busy this task has been, every so often if at all.
+  void reportLoad(TaskId host, double every) {
+    loadTo_ = host;
+    loadEvery_ = every;
+  }
+  void flush();
+
   void notePeak(std::uint64_t waiting) { peakQueue = std::max(peakQueue, waiting); }
 
   // The part of a report that is the same for all tasks.
@@ -24,6 +31,8 @@ class TaskDesk {
 
  private:
   double born_;
+  TaskId loadTo_ = kNobody;
+  double loadEvery_ = 0, loadSent_ = 0, idleThen_ = 0;
 };
 
 // Hands a link event to a task: packets are decoded; the death of the task's parent, the host, ends it.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pvm/voxel_task.h"
 
+#include "rayshade/scene/extract.h"
 #include "rayshade/shading/evaluate.h"
 
 namespace rayshade {
@@ -17,51 +18,103 @@ void VoxelTask::on(TaskId from, Items message) {
 }
 
 void VoxelTask::on(TaskId from, Configure message) {
-  if (!isComplete(message.directory, message.tree) || message.number >= message.directory.voxelTasks.size()) {
+  const Directory& directory = message.directory;
+  if (!isComplete(directory, message.tree) || message.number >= directory.voxelTasks.size() ||
+      message.cellBytes.size() != cellCount(message.tree)) {
     ++desk_.outbox.traffic.refused;
     return;
   }
   desk_.outbox.beginEpoch(message.epoch);
   desk_.epoch = message.epoch;
+  desk_.reportLoad(from, message.loadEvery);
   raysByDepth_.clear();
   waitingRays_ = 0;
   shadows_.clear();
-  setting_ = std::move(message.setting);
-  lightPoints_ = lightPointCount(setting_);
-  tree_ = std::move(message.tree);
-  directory_ = std::move(message.directory);
-  number_ = message.number;
-  exposure_ = message.exposure;
-  desk_.link.connect(directory_.voxelTasks);
-  desk_.link.connect(directory_.shadeTasks);
+  number_ = message.number % directory.tasksPerCluster();
+  const std::uint32_t cluster = message.number / directory.tasksPerCluster();
+  worker_.begin({std::move(message.setting), std::move(message.tree), std::move(message.directory),
+                 cluster, message.exposure, message.policy,
+                 std::move(message.cellBytes)},
+                message.number);
+  desk_.link.connect(worker_.at().directory.voxelTasks);
+  desk_.link.connect(worker_.at().directory.shadeTasks);
+  desk_.link.connect(worker_.at().directory.pyramidTasks);
   if (itemsAreNew_) buildRegions();
   itemsAreNew_ = false;
   desk_.outbox.post(from, Ready{message.epoch, arithmeticFingerprint(), model_->store().objectsOf(kWorld).size(),
                                 owned_, model_->leftOut()});
 }
 
+void VoxelTask::on(TaskId, Weights message) {
+  if (message.epoch == desk_.epoch) worker_.setWeights(std::move(message.shadeWeights));
+}
+
 void VoxelTask::buildRegions() {
-  model_->prepare(exposure_);
-  std::vector<std::vector<ObjectIndex>> members(voxelCount(tree_));
+  const TraceSetting& at = worker_.at();
+  model_->prepare(at.exposure);
+  cellObjects_.clear();
+  std::vector<std::vector<ObjectIndex>> members(voxelCount(at.tree));
   std::vector<VoxelId> touched;
   owned_ = 0;
   for (ObjectIndex object : model_->store().objectsOf(kWorld)) {
     touched.clear();
-    voxelsTouching(tree_, model_->boundsOf(object), touched);
+    voxelsTouching(at.tree, model_->boundsOf(object), touched);
     // Every object belongs to the first voxel that it touches; there it counts.
-    if (!touched.empty() && directory_.voxels[static_cast<std::size_t>(touched.front())] == number_) ++owned_;
+    if (!touched.empty() && at.directory.voxels[static_cast<std::size_t>(touched.front())] == number_) ++owned_;
     for (VoxelId voxel : touched) members[static_cast<std::size_t>(voxel)].push_back(object);
   }
   regions_.clear();
   for (std::size_t voxel = 0; voxel < members.size(); ++voxel) {
-    const bool mine = directory_.voxels[voxel] == number_;
+    const bool mine = at.directory.voxels[voxel] == number_;
     regions_.push_back(mine ? std::make_unique<Region>(model_->regionOf(std::move(members[voxel]))) : nullptr);
+  }
+}
+
+// A cell for somebody else's cache.  Which objects lie in which cell of a voxel is found out when the first one is asked for.
+void VoxelTask::on(TaskId from, CellWanted message) {
+  const BinTree& tree = worker_.at().tree;
+  if (static_cast<std::size_t>(message.cell) >= cellCount(tree)) {
+    ++desk_.outbox.traffic.refused;
+    return;
+  }
+  const VoxelId voxel = voxelOfCell(tree, message.cell);
+  const Region* region = find(voxel);
+  if (region == nullptr) {
+    ++desk_.outbox.traffic.refused;
+    return;
+  }
+  const auto key = static_cast<std::uint32_t>(message.cell);
+  if (!cellObjects_.contains(key)) {
+    std::vector<CellId> cells;
+    for (ObjectIndex object : region->objects) {
+      cells.clear();
+      cellsTouching(tree, model_->boundsOf(object), cells);
+      for (CellId cell : cells)
+        if (voxelOfCell(tree, cell) == voxel) cellObjects_[static_cast<std::uint32_t>(cell)].push_back(object);
+    }
+    cellObjects_[key];
+  }
+  Extract extract(model_->store());
+  for (ObjectIndex object : cellObjects_[key]) extract.add(object);
+  ++cellsServed_;
+  desk_.outbox.post(from, CellItems{message.cell, std::move(extract.items)});
+}
+
+void VoxelTask::on(TaskId, CellItems message) {
+  const CellId cell = message.cell;
+  if (worker_.take(std::move(message))) {
+    worker_.release(cell);
+  } else {
+    ++desk_.outbox.traffic.refused;
   }
 }
 
 void VoxelTask::on(TaskId from, Finish) {
   Report report = desk_.report();
-  report.counts = counts_;
+  report.counts = worker_.counts();
+  report.cache = worker_.cache().counts();
+  report.shadowCache = worker_.shadowCounts();
+  report.cellsServed = cellsServed_;
   report.modelBytes = model_->bytes();
   for (const auto& region : regions_)
     if (region) report.modelBytes += region->objects.capacity() * sizeof(ObjectIndex) + region->bvh.bytes();
@@ -81,6 +134,7 @@ void VoxelTask::on(TaskId, ShadowTask task) {
 }
 
 const Region* VoxelTask::find(VoxelId voxel) const { return regions_[static_cast<std::size_t>(voxel)].get(); }
+Ground VoxelTask::own(VoxelId voxel) const { return {&*model_, find(voxel)}; }
 
 void VoxelTask::queue(RayTask task) {
   constexpr int kDepths = 64;  // deeper ones share the last queue
@@ -112,65 +166,32 @@ bool VoxelTask::work(double until) {
   }
 }
 
-void VoxelTask::answer(const ReplyTo& to, Color color) {
-  desk_.outbox.post(to.task, Answer{to.record, to.slot, color});
-}
-
 void VoxelTask::trace(RayTask& task) {
-  const Progress progress = followRay(tree_, *model_, *this, task.ray, task.step, counts_);
+  const TraceSetting& at = worker_.at();
+  const Progress progress = followRay(at.tree, *model_, *this, task.ray, task.step, worker_.counts());
   switch (progress.state) {
-    case Progress::State::hit: shade(task, progress.hit); break;
-    case Progress::State::left: answer(task.to, missed(task.ray, setting_)); break;
+    case Progress::State::hit:
+      worker_.shade(task.ray, task.to, progress.hit, *model_, [this](RayTask&& child) { queue(std::move(child)); });
+      break;
+    case Progress::State::left: worker_.answer(task.to, missed(task.ray, at.setting)); break;
     case Progress::State::elsewhere:
       task.step = progress.step;
-      desk_.outbox.post(directory_.ownerOf(progress.voxel), task);
+      desk_.outbox.post(at.ownerOf(progress.voxel), task);
       break;
   }
 }
 
 void VoxelTask::trace(ShadowTask& task) {
-  const Progress progress = followShadow(tree_, *model_, *this, task.shadow, task.step, setting_, counts_);
+  const TraceSetting& at = worker_.at();
+  const Progress progress =
+      followShadow(at.tree, *model_, *this, task.shadow, task.step, at.setting, worker_.counts());
   switch (progress.state) {
-    case Progress::State::hit: answer(task.to, kBlack); break;
-    case Progress::State::left: answer(task.to, task.shadow.through); break;
+    case Progress::State::hit: worker_.answer(task.to, kBlack); break;
+    case Progress::State::left: worker_.answer(task.to, task.shadow.through); break;
     case Progress::State::elsewhere:
       task.step = progress.step;
-      desk_.outbox.post(directory_.ownerOf(progress.voxel), task);
+      desk_.outbox.post(at.ownerOf(progress.voxel), task);
       break;
-  }
-}
-
-// Spawns the secondary rays and informs a shade task.  Shadow rays that find their light without leaving this task
-// are settled at once, and their colours travel with the intersection.
-void VoxelTask::shade(RayTask& task, const Hit& hit) {
-  const SurfacePoint at = evaluateSurface(*model_, hit, task.ray, setting_);
-  Secondary spawned = spawnSecondary(task.ray, at, setting_);
-  Expect expect;
-  expect.record = static_cast<RecordId>(number_) << 48 | (serial_++ & 0xffffffffffffu);
-  expect.to = task.to;
-  const TaskId shader = directory_.shadeTasks[serial_ % directory_.shadeTasks.size()];
-  for (std::size_t point = 0; point < spawned.lit.size(); ++point) {
-    if (spawned.lit[point] != Lit::asked) continue;
-    ++counts_.shadowRays;
-    ShadowTask shadow{shadowRay(task.ray, at, setting_, point), 0, {shader, expect.record, static_cast<Slot>(point)}};
-    const Progress progress = followShadow(tree_, *model_, *this, shadow.shadow, 0, setting_, counts_);
-    if (progress.state == Progress::State::elsewhere) {
-      shadow.step = progress.step;
-      expect.pending.push_back(static_cast<Slot>(point));
-      desk_.outbox.post(directory_.ownerOf(progress.voxel), shadow);
-    } else {
-      expect.known.push_back(progress.state == Progress::State::hit ? kBlack : shadow.shadow.through);
-    }
-  }
-  expect.hit = describe(task.ray, hit.t, at, spawned, setting_);
-  desk_.outbox.post(shader, expect);
-  if (spawned.transmitted) {
-    ++counts_.transmittedRays;
-    queue({std::move(*spawned.transmitted), 0, {shader, expect.record, kTransmittedSlot}});
-  }
-  if (spawned.reflected) {
-    ++counts_.reflectedRays;
-    queue({std::move(*spawned.reflected), 0, {shader, expect.record, kReflectedSlot}});
   }
 }
 

@@ -9,20 +9,20 @@
 
 #include <optional>
 
-#include "pvm/task_desk.h"
+#include "pvm/ray_worker.h"
 
 namespace rayshade {
 
-class VoxelTask : public VoxelSource {
+class VoxelTask : public VoxelSource, public OwnVoxels {
  public:
-  using Accepted = TypeList<Forget, Items, Configure, Finish, Ping, RayTask, ShadowTask>;
+  using Accepted = TypeList<Forget, Items, Configure, Finish, Ping, Weights, RayTask, ShadowTask, CellWanted, CellItems>;
 
-  explicit VoxelTask(Link& link) : desk_(link) {}
+  explicit VoxelTask(Link& link) : desk_(link), worker_(desk_, this) {}
 
   // The life in event_loop.h.
   void receive(const LinkEvent& event) { receiveEvent(*this, desk_, event); }
   bool work(double until);
-  void flush() { desk_.outbox.flush(); }
+  void flush() { desk_.flush(); }
   bool finished() const { return desk_.finished; }
   void noteIdle(double seconds) { desk_.idleSeconds += seconds; }
 
@@ -34,36 +34,34 @@ class VoxelTask : public VoxelSource {
   void on(TaskId from, Ping);
   void on(TaskId from, RayTask task);
   void on(TaskId from, ShadowTask task);
+  void on(TaskId from, Weights message);
+  void on(TaskId from, CellWanted message);
+  void on(TaskId from, CellItems message);
 
   const Region* find(VoxelId voxel) const override;
+  Ground own(VoxelId voxel) const override;
   std::uint64_t waiting() const { return waitingRays_ + shadows_.size(); }
 
  private:
   void buildRegions();
   void trace(RayTask& task);
   void trace(ShadowTask& task);
-  void shade(RayTask& task, const Hit& hit);
-  void answer(const ReplyTo& to, Color color);
   void queue(RayTask task);
 
   TaskDesk desk_;
-  Setting setting_;
-  std::size_t lightPoints_ = 0;
-  BinTree tree_;
-  Directory directory_;
-  std::uint32_t number_ = 0;
-  Exposure exposure_;
+  RayWorker worker_;
+  std::uint32_t number_ = 0;  // in its cluster
 
   std::optional<Model> model_{std::in_place};
   bool itemsAreNew_ = false;
   std::vector<std::unique_ptr<Region>> regions_;  // by voxel; null: not mine
   std::uint64_t owned_ = 0;
+  std::map<std::uint32_t, std::vector<ObjectIndex>> cellObjects_;  // made when somebody asks for a cell
+  std::uint64_t cellsServed_ = 0;
 
   std::vector<std::vector<RayTask>> raysByDepth_;
   std::uint64_t waitingRays_ = 0;
   std::vector<ShadowTask> shadows_;
-  std::uint64_t serial_ = 0;  // of the next intersection found here
-  TraceCounts counts_;
 };
 
 }  // namespace rayshade

@@ -36,11 +36,14 @@ struct LocalProgress {
   std::uint32_t step = 0;
 };
 
-LocalProgress followLocally(const BinTree& tree, GroundSource& source, const Ray& ray, TraceCounts& counts);
+// `unit` counts the voxels and cells that were visited; the first `unit` of them are skipped, so a ray that missed
+// something goes on where it was.
+LocalProgress followLocally(const BinTree& tree, GroundSource& source, const Ray& ray, std::uint32_t& unit,
+                            TraceCounts& counts);
 
 // The same for a shadow ray; `hit` means darkness.  When something is missing `shadow` is as far as it came, and may be
-// sent on to the voxel; to start again later, keep a copy.
-LocalProgress followLocally(const BinTree& tree, GroundSource& source, ShadowRay& shadow, const Setting& setting,
-                            TraceCounts& counts);
+// sent on to the voxel.
+LocalProgress followLocally(const BinTree& tree, GroundSource& source, ShadowRay& shadow, std::uint32_t& unit,
+                            const Setting& setting, TraceCounts& counts);
 
 }  // namespace rayshade

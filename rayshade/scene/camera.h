@@ -28,4 +28,9 @@ std::optional<View> viewOf(const Camera& camera, const PictureSpec& picture);
 // The ray of a sample.
 Ray primaryRay(const View& view, const SamplePosition& at, std::int32_t frame);
 
+template <class Archive>
+void serialize(Archive& archive, View& v) {
+  archive(v.eye, v.first, v.right, v.down, v.lensRight, v.lensUp, v.focalDistance);
+}
+
 }  // namespace rayshade

@@ -3,12 +3,14 @@
 #pragma once
 
 #include "rayshade/scene/object_stream.h"
+#include "rayshade/space/density.h"
 
 namespace rayshade {
 
 struct Survey {
   std::uint64_t objects = 0;  // of the world
   Bounds world;               // of the bounded ones, at the exposure of the survey
+  DensityGrid density;        // of all of them, for cutting space into cells
   bool moves = false;         // something moves: another exposure needs another survey
 };
 
@@ -17,6 +19,7 @@ class SurveySink : public SceneSink {
   explicit SurveySink(const Exposure& exposure)
       : stream_(exposure, [this](const SceneObject&, const Bounds& bounds, std::span<const FrameItem* const>) {
           if (bounds.finite()) survey_.world = join(survey_.world, bounds);
+          survey_.density.add(bounds);
         }) {}
 
   void surface(SurfaceId id, const Surface& surface) override { stream_.surface(id, surface); }

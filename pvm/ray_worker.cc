@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pvm/ray_worker.h"
+
+namespace rayshade {
+namespace {
+
+// A ray on the wire, and the answer that comes back; measured on the standard scenes (docs/wire-format.md).
+constexpr double kBytesPerForward = 130;
+// How many bundles are expected to use a cell once it is here: shadow rays of neighbouring hits go the same way.
+constexpr double kExpectedUses = 64;
+
+}  // namespace
+
+void RayWorker::begin(TraceSetting setting, std::uint32_t recordBase) {
+  at_ = std::move(setting);
+  at_.cellBytes.resize(cellCount(at_.tree));
+  recordBase_ = recordBase;
+  parked_.clear();
+  parkedCount_ = 0;
+  asked_.clear();
+  toAsk_.clear();
+  queued_.clear();
+  cache_.begin(at_.policy.cacheBytes);
+}
+
+Ground RayWorker::cell(CellId cell) {
+  if (isEmpty(cell)) return {&noModel_, &nothing_};
+  ++shadowCounts_.asked;
+  const Ground ground = cache_.find(cell);
+  if (ground.region != nullptr) ++shadowCounts_.hits;
+  return ground;
+}
+
+void RayWorker::want(CellId cell) {
+  const auto key = static_cast<std::uint32_t>(cell);
+  if (isHere(cell) || asked_.contains(key) || queued_.contains(key)) return;
+  toAsk_.push_back(cell);
+  queued_.insert(key);
+  askMore();
+}
+
+void RayWorker::askMore() {
+  while (!toAsk_.empty() && asked_.size() < at_.policy.outstanding) {
+    const CellId cell = toAsk_.front();
+    toAsk_.pop_front();
+    queued_.erase(static_cast<std::uint32_t>(cell));
+    asked_.insert(static_cast<std::uint32_t>(cell));
+    desk_.outbox.post(at_.ownerOf(voxelOfCell(at_.tree, cell)), CellWanted{cell});
+  }
+}
+
+bool RayWorker::fetchingPays(CellId missing, std::size_t rays) const {
+  return at_.cellBytes[static_cast<std::size_t>(missing)] <=
+         kBytesPerForward * kExpectedUses * static_cast<double>(rays);
+}
+
+void RayWorker::forward(const Pending& pending, const Bundle& bundle, const LocalProgress& progress) {
+  desk_.outbox.post(at_.ownerOf(progress.voxel),
+                    ShadowTask{pending.shadow, progress.step, {bundle.shader, bundle.record, pending.slot}});
+}
+
+// The rays of the bundle have all met something that is not here: decide, for the bundle as a whole, what to do.
+void RayWorker::traceBundle(Bundle&& bundle, const LightSource& light) {
+  const Pending& first = bundle.rays.front();
+  ShadowRay probe = first.shadow;
+  std::uint32_t unit = first.unit;
+  const LocalProgress missing = followLocally(at_.tree, *this, probe, unit, at_.setting, counts_);
+  const bool fetch = at_.policy.shadows == ShadowPolicy::local ||
+                     (at_.policy.shadows == ShadowPolicy::automatic && fetchingPays(missing.cell, bundle.rays.size()));
+  if (fetch) {
+    park(std::move(bundle), missing.cell, &light);
+    return;
+  }
+  for (Pending& pending : bundle.rays) {
+    const LocalProgress at = followLocally(at_.tree, *this, pending.shadow, pending.unit, at_.setting, counts_);
+    forward(pending, bundle, at);
+  }
+}
+
+void RayWorker::park(Bundle&& bundle, CellId missing, const LightSource* light) {
+  // A light pyramid asks for all that it may need at once; cells of one's own voxels are no use to it.
+  const AreaLight* area = light == nullptr ? nullptr : std::get_if<AreaLight>(&light->kind);
+  want(missing);
+  if (area != nullptr) {
+    const Vec3 apex = bundle.rays.front().shadow.ray.origin;
+    for (CellId cell : clipList(at_.tree, pyramidTo(apex, area->corner, area->edgeU, area->edgeV)))
+      if (voxel(voxelOfCell(at_.tree, cell)).region == nullptr) want(cell);
+  }
+  parked_[static_cast<std::uint32_t>(missing)].push_back(std::move(bundle));
+  desk_.notePeak(++parkedCount_);
+}
+
+bool RayWorker::take(CellItems&& message) {
+  const auto key = static_cast<std::uint32_t>(message.cell);
+  if (asked_.erase(key) == 0) return false;
+  const std::size_t bytes = at_.cellBytes[key];
+  cache_.insert(message.cell, std::move(message.items), at_.exposure, bytes);
+  askMore();
+  cache_.pin(message.cell);
+  const auto waiting = parked_.find(key);
+  if (waiting != parked_.end()) {
+    std::vector<Bundle> bundles = std::move(waiting->second);
+    parked_.erase(waiting);
+    parkedCount_ -= bundles.size();
+    for (Bundle& bundle : bundles) resume(std::move(bundle));
+  }
+  return true;
+}
+
+// Goes on with a bundle; those rays that miss something again wait for it together.
+void RayWorker::resume(Bundle&& bundle) {
+  std::map<std::uint32_t, Bundle> missing;  // by cell
+  for (Pending& pending : bundle.rays) {
+    const LocalProgress progress =
+        followLocally(at_.tree, *this, pending.shadow, pending.unit, at_.setting, counts_);
+    if (progress.state == LocalProgress::State::missing) {
+      Bundle& rest = missing.try_emplace(static_cast<std::uint32_t>(progress.cell),
+                                         Bundle{{}, bundle.shader, bundle.record}).first->second;
+      rest.rays.push_back(std::move(pending));
+    } else {
+      answer({bundle.shader, bundle.record, pending.slot},
+             progress.state == LocalProgress::State::hit ? kBlack : pending.shadow.through);
+    }
+  }
+  for (auto& [cell, rest] : missing) park(std::move(rest), CellId{cell}, nullptr);
+}
+
+}  // namespace rayshade
