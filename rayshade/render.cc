@@ -31,8 +31,7 @@ void Scene::prepare(const Exposure& exposure, std::uint32_t voxels) {
 
 std::size_t Scene::bytes() const {
   std::size_t total = model.bytes();
-  for (const Region& region : regions_)
-    total += region.objects.capacity() * sizeof(ObjectIndex) + region.bvh.bytes();
+  for (const Region& region : regions_) total += region.bytes();
   return total;
 }
 
@@ -41,42 +40,61 @@ Exposure exposureOf(const PictureSpec& picture, std::int32_t frame) {
   return {opens, opens + std::max(picture.shutter, 0.0), frame};
 }
 
-Color traceRay(const Scene& scene, const Ray& ray, TraceCounts& counts) {
-  const Progress progress = followRay(scene.tree, scene.model, scene, ray, 0, counts);
-  if (progress.state != Progress::State::hit) return missed(ray, scene.setting);
-  const SurfacePoint at = evaluateSurface(scene.model, progress.hit, ray, scene.setting);
-  const Secondary spawned = spawnSecondary(ray, at, scene.setting);
-  Gathered gathered;
-  gathered.light.resize(spawned.lit.size());
-  for (std::size_t point = 0; point < spawned.lit.size(); ++point) {
-    if (spawned.lit[point] != Lit::asked) continue;
-    ++counts.shadowRays;
-    ShadowRay shadow = shadowRay(ray, at, spawned.samples[point]);
-    const Progress way = followShadow(scene.tree, scene.model, scene, shadow, 0, scene.setting, counts);
-    gathered.light[point] = way.state == Progress::State::hit ? kBlack : shadow.through;
+namespace {
+
+class Tracer {
+ public:
+  Tracer(const Scene& scene, TraceCounts& counts)
+      : scene_(scene), counts_(counts), occluders_(lightPointCount(scene.setting), kNone) {}
+
+  Color trace(const Ray& ray) {
+    const Progress progress = followRay(scene_.tree, scene_.model, scene_, ray, 0, counts_);
+    const Setting& setting = scene_.setting;
+    if (progress.state != Progress::State::hit) return missed(ray, setting);
+    const SurfacePoint at = evaluateSurface(scene_.model, progress.hit, ray, setting);
+    const Secondary spawned = spawnSecondary(ray, at, setting);
+    Gathered gathered;
+    gathered.light.resize(spawned.lit.size());
+    for (std::size_t point = 0; point < spawned.lit.size(); ++point) {
+      if (spawned.lit[point] != Lit::asked) continue;
+      ++counts_.shadowRays;
+      ShadowRay shadow = shadowRay(ray, at, spawned.samples[point]);
+      shadow.occluder = occluders_[point];
+      const Progress way = followShadow(scene_.tree, scene_.model, scene_, shadow, 0, setting, counts_);
+      occluders_[point] = shadow.occluder;
+      gathered.light[point] = way.state == Progress::State::hit ? kBlack : shadow.through;
+    }
+    if (spawned.transmitted) {
+      ++counts_.transmittedRays;
+      gathered.transmitted = trace(*spawned.transmitted);
+    }
+    if (spawned.reflected) {
+      ++counts_.reflectedRays;
+      gathered.reflected = trace(*spawned.reflected);
+    }
+    return combine(describe(ray, progress.hit.t, at, spawned, setting), gathered, setting, spawned.samples);
   }
-  if (spawned.transmitted) {
-    ++counts.transmittedRays;
-    gathered.transmitted = traceRay(scene, *spawned.transmitted, counts);
-  }
-  if (spawned.reflected) {
-    ++counts.reflectedRays;
-    gathered.reflected = traceRay(scene, *spawned.reflected, counts);
-  }
-  return combine(describe(ray, progress.hit.t, at, spawned, scene.setting), gathered, scene.setting, spawned.samples);
-}
+
+ private:
+  const Scene& scene_;
+  TraceCounts& counts_;
+  std::vector<ObjectIndex> occluders_;  // by light point: what stopped the last ray to it
+};
+
+}  // namespace
 
 FrameResult renderFrame(const Scene& scene, const View& view, const PictureSpec& picture, std::int32_t frame,
                         std::uint64_t seed, const std::function<void(const std::vector<Color>&)>& row) {
   Sampler sampler(picture, seed, static_cast<std::uint32_t>(frame), Sampler::Guessing::no);
   FrameResult result;
+  Tracer tracer(scene, result.counts);
   std::vector<Color> finished;
   SampleId sample;
   while (!sampler.finished()) {
     while (sampler.next(sample)) {
       ++result.counts.primaryRays;
       const SamplePosition position = samplePosition(picture, seed, static_cast<std::uint32_t>(frame), sample);
-      sampler.supply(sample, traceRay(scene, primaryRay(view, position, frame), result.counts));
+      sampler.supply(sample, tracer.trace(primaryRay(view, position, frame)));
     }
     while (sampler.takeRow(finished)) row(finished);
   }

@@ -31,9 +31,6 @@ class Scene : public VoxelSource {
 // The exposure of a frame; frames are numbered from picture.firstFrame on, frame 0 opens at picture.startTime.
 Exposure exposureOf(const PictureSpec& picture, std::int32_t frame);
 
-// The colour that a ray brings back.
-Color traceRay(const Scene& scene, const Ray& ray, TraceCounts& counts);
-
 // Renders one frame; rows are handed over from top to bottom as they are finished.
 struct FrameResult {
   TraceCounts counts;

@@ -73,6 +73,8 @@ class SceneStore : public SceneSink {
   }
   const Instance& instance(const PlacedObject& object) const { return instances_[object.body]; }
   const Csg& csg(const PlacedObject& object) const { return csgs_[object.body]; }
+  const Instance& instance(std::uint32_t body) const { return instances_[body]; }
+  const Csg& csg(std::uint32_t body) const { return csgs_[body]; }
 
   // Is any surface of the scene transparent in shadows (before textures, as rayshade has it)?
   bool anyTransparent() const { return anyTransparent_; }

@@ -84,15 +84,18 @@ SurfacePoint evaluateSurface(const Model& model, const Hit& hit, const Ray& ray,
   }
 
   // Up to the world.
-  bool textured = false;
+  bool textured = false, placed = false;  // placed: in a space other than the world
   Affine toWorld;
   for (std::size_t i = path.steps.size(); i-- > 0;) {
     const FrameIndex frame = store.object(path.steps[i].object).frame;
     textured = textured || store.frame(frame).textured;
-    if (!store.frame(frame).identity) toWorld = then(toWorld, mapAt(store, frame, ray.moment));
+    if (store.frame(frame).identity) continue;
+    placed = true;
+    toWorld = then(toWorld, mapAt(store, frame, ray.moment));
   }
+  placed = placed && !isIdentity(toWorld);
   at.surface = boundSurface(model, path);
-  at.normal = normalize(mapNormal(toWorld.inverse, shapePoint.normal));
+  at.normal = placed ? normalize(mapNormal(toWorld.inverse, shapePoint.normal)) : shapePoint.normal;
   if (textured) {
     Climb climb(ray, last, shapePoint, at.surface, setting.samplesPerSide);
     const auto ofPrimitive = [&](Vec3 position) {
@@ -104,10 +107,9 @@ SurfacePoint evaluateSurface(const Model& model, const Hit& hit, const Ray& ray,
     at.surface = climb.hit().surface;
     at.normal = climb.hit().normal;
   }
-  if (isIdentity(toWorld)) {
+  if (!placed) {
     at.position = shapePoint.position;
     at.geometricNormal = shapePoint.geometricNormal;
-    if (!textured) at.normal = shapePoint.normal;
     at.error = shapePoint.error + kRounding * maxAbs(at.position);
   } else {
     at.position = mapPoint(toWorld.forward, shapePoint.position);

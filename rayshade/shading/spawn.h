@@ -9,6 +9,7 @@
 
 #include "rayshade/base/inline_vector.h"
 #include "rayshade/scene/setting.h"
+#include "rayshade/scene/store.h"
 #include "rayshade/shading/surface_point.h"
 #include "rayshade/optics/ray.h"
 
@@ -33,6 +34,7 @@ struct ShadowRay {
   double last = 0;         // t of the last transparent surface that was crossed
   double insideExtinct = 1;  // extinct of the solid it is in, if `inside`
   bool inside = false;
+  ObjectIndex occluder = kNone;  // what to try first, see obstruction(); not sent
 };
 
 struct Secondary {

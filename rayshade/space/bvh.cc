@@ -60,14 +60,15 @@ Bvh::Entry Bvh::enter(const Vec3& origin, const Vec3& direction, double tMin, do
   ray.scale = stretch * scale_;
 
   double start = tMin * ray.scale, end = tMax * ray.scale;
+  double exactly[3];  // 1 / d
   for (int axis = 0; axis < 3; ++axis) {
     const double slack = 0x1p-50 * (1 + std::abs(q[axis]));
-    const double inverse = 1 / d[axis];
-    const double low = (box_.low[axis] - slack - q[axis]) * inverse;
-    const double high = (box_.high[axis] + slack - q[axis]) * inverse;
-    const double near = inverse > 0 ? low : high, far = inverse > 0 ? high : low;
-    if (near > start) start = near;
-    if (far < end) end = far;
+    exactly[axis] = 1 / d[axis];
+    const double low = (box_.low[axis] - slack - q[axis]) * exactly[axis];
+    const double high = (box_.high[axis] + slack - q[axis]) * exactly[axis];
+    const double near = exactly[axis] > 0 ? low : high, far = exactly[axis] > 0 ? high : low;
+    start = near > start ? near : start;
+    end = far < end ? far : end;
   }
   if (!(start <= end)) return Entry::kMissed;
   // Infinite only for a ray that stands still, where any number will do.
@@ -78,8 +79,7 @@ Bvh::Entry Bvh::enter(const Vec3& origin, const Vec3& direction, double tMin, do
     const double step = start * d[axis];
     const double p = q[axis] + step;
     const double slack = 0x1p-50 * (1 + std::abs(q[axis]) + std::abs(step));
-    const double smallest = 0x1p-60;
-    const double inverse = 1 / (std::abs(d[axis]) > smallest ? d[axis] : std::copysign(smallest, d[axis]));
+    const double inverse = std::abs(d[axis]) > 0x1p-60 ? exactly[axis] : std::copysign(0x1p+60, d[axis]);
     const bool up = inverse > 0;
     ray.nearPlane[axis] = up ? axis : axis + 3;
     ray.farPlane[axis] = up ? axis + 3 : axis;

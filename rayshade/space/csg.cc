@@ -34,8 +34,7 @@ bool enteringAt(const Model& model, ObjectIndex index, const LocalRay& outer, co
 
 Crossing nextCrossing(const Model& model, ObjectIndex index, const LocalRay& ray, const Moment& moment,
                       double tMin) {
-  Probe probe{model, ray, moment};
-  const double t = probe.intersect(index, tMin);
+  const double t = Probe(model, ray, moment).intersect(model.target(index), tMin);
   if (!(t < kNoHit)) return {};
   return {t, enteringAt(model, index, ray, moment, t)};
 }

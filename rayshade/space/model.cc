@@ -52,8 +52,19 @@ Region Model::regionOf(std::vector<ObjectIndex> objects) const {
   Region region;
   region.bvh = Bvh(bounds);
   region.objects.reserve(kept.size());
-  for (std::uint32_t item : region.bvh.order()) region.objects.push_back(kept[item]);
+  for (std::uint32_t item : region.bvh.order()) region.objects.push_back(target(kept[item]));
   return region;
+}
+
+Target Model::target(ObjectIndex index) const {
+  const PlacedObject& object = store_.object(index);
+  Target target{index, store_.frame(object.frame).identity ? 0 : object.frame, object.body, object.kind, true};
+  if (store_.anyTransparent()) {
+    // An instance or CSG is looked into only when it is hit; until then it may be transparent.
+    const bool whole = object.kind != kInstanceKind && object.kind != kCsgKind;
+    target.opaque = whole && store_.surfaceOrDefault(object.surface).transparency < kNegligible;
+  }
+  return target;
 }
 
 void Model::take(std::vector<Item>&& items) {
@@ -108,14 +119,18 @@ void Model::prepare(const Exposure& exposure) {
 std::size_t Model::bytes() const {
   std::size_t total = store_.bytes();
   for (const Definition& definition : definitions_)
-    total += definition.region.objects.capacity() * sizeof(ObjectIndex) + definition.region.bvh.bytes();
+    total += definition.region.bytes();
   return total;
 }
 
 LocalRay intoFrame(const SceneStore& store, FrameIndex index, const LocalRay& outer, const Moment& moment) {
   const PlacedFrame& frame = store.frame(index);
   if (frame.identity) return outer;
-  const Matrix inverse = frame.moves ? mapAt(store, index, moment).inverse : frame.toContainer.inverse;
+  if (frame.moves) return mappedInto(mapAt(store, index, moment).inverse, outer);
+  return mappedInto(frame.toContainer.inverse, outer);
+}
+
+LocalRay mappedInto(const Matrix& inverse, const LocalRay& outer) {
   const Vec3 direction = mapVector(inverse, outer.direction);
   const double scale = length(direction);
   return {mapPoint(inverse, outer.origin), direction / scale, outer.scale * scale};
@@ -125,17 +140,21 @@ Hit visit(const Model& model, const Region& region, const Ray& ray, double tMin,
   return nearestHit(model, region, {ray.origin, ray.direction, 1}, ray.moment, tMin, tExit);
 }
 
-Obstruction obstruction(const Model& model, const Region& region, const Ray& ray, double tMin, double tExit) {
-  Probe probe{model, {ray.origin, ray.direction, 1}, ray.moment};
+Obstruction obstruction(const Model& model, const Region& region, const Ray& ray, double tMin, double tExit,
+                        ObjectIndex& occluder) {
+  Probe probe(model, {ray.origin, ray.direction, 1}, ray.moment);
+  if (occluder != kNone) {
+    const Target target = model.target(occluder);
+    if (target.opaque && probe.intersect(target, tMin) < tExit) return {true, false};
+  }
   Obstruction met;
   region.bvh.any(ray.origin, ray.direction, tMin, tExit, [&](std::uint32_t first, std::uint32_t count) {
-    for (std::uint32_t i = first; i < first + count; ++i) {
-      const ObjectIndex index = region.objects[i];
-      const Opacity opacity = opacityOf(model, index);
-      if (opacity == Opacity::transparent && met.transparent) continue;  // nothing new could be learned
-      if (!(probe.intersect(index, tMin) < tExit)) continue;
-      if (opacity == Opacity::opaque) {
+    for (const Target& target : std::span(region.objects).subspan(first, count)) {
+      if (!target.opaque && met.transparent) continue;  // nothing new could be learned
+      if (!(probe.intersect(target, tMin) < tExit)) continue;
+      if (target.opaque) {
         met.opaque = true;
+        occluder = target.object;
         return true;
       }
       met.transparent = true;

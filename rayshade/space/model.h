@@ -16,9 +16,20 @@
 
 namespace rayshade {
 
+// An object with all that its test by a ray needs to know but the shape itself.
+struct Target {
+  ObjectIndex object = kNone;
+  FrameIndex frame = 0;    // 0: none to go through, also when the object's own frame is the identity
+  std::uint32_t body = 0;  // in the array of its kind
+  BodyKind kind{};
+  bool opaque = true;  // as a whole: no surface bound in it lets light through
+};
+
 struct Region {
-  std::vector<ObjectIndex> objects;  // in the order of the leaves
+  std::vector<Target> objects;  // in the order of the leaves
   Bvh bvh;
+
+  std::size_t bytes() const { return objects.capacity() * sizeof(Target) + bvh.bytes(); }
 };
 
 struct Hit {
@@ -42,6 +53,7 @@ class Model {
 
   Bounds boundsOf(ObjectIndex object) const;  // in the space of its container, padded
   Region regionOf(std::vector<ObjectIndex> objects) const;
+  Target target(ObjectIndex object) const;
   const Region& definition(const Instance& instance) const {
     return definitions_[slot(instance.definition)].region;
   }
@@ -81,11 +93,13 @@ std::uint64_t precedence(const PlacedObject& object);
 Hit visit(const Model& model, const Region& region, const Ray& ray, double tMin, double tExit);
 
 // Is there an opaque thing with tMin < t < tExit?  `transparent` tells whether something else was met on the way (as
-// far as was looked).
+// far as was looked).  `occluder` is what is asked first, if it is an opaque one, and becomes what was found: rays to
+// the same light are often stopped by the same thing.  It changes when the answer is found, never the answer.
 struct Obstruction {
   bool opaque = false, transparent = false;
 };
-Obstruction obstruction(const Model& model, const Region& region, const Ray& ray, double tMin, double tExit);
+Obstruction obstruction(const Model& model, const Region& region, const Ray& ray, double tMin, double tExit,
+                        ObjectIndex& occluder);
 
 // One step of the way from an object of the world down to the shape that was hit.
 struct PathStep {
@@ -105,5 +119,6 @@ double rootAt(const Model& model, const PathStep& step, double t);
 
 // The ray in the space inside a frame, `outer` being the ray in the space of the frame's container.
 LocalRay intoFrame(const SceneStore& store, FrameIndex frame, const LocalRay& outer, const Moment& moment);
+LocalRay mappedInto(const Matrix& inverse, const LocalRay& outer);
 
 }  // namespace rayshade

@@ -32,31 +32,27 @@ constexpr bool keywordIs(BodyKind kind, std::initializer_list<std::string_view> 
 bool isFlat(BodyKind kind) { return keywordIs(kind, {"disc", "polygon", "triangle", "triangleuv"}); }
 bool isUnbounded(BodyKind kind) { return keywordIs(kind, {"plane"}); }
 
-Opacity opacityOf(const Model& model, ObjectIndex index) {
-  const SceneStore& store = model.store();
-  if (!store.anyTransparent()) return Opacity::opaque;
-  const PlacedObject& object = store.object(index);
-  // An instance or CSG is looked into only when it is hit; until then it may be transparent.
-  if (object.kind == kInstanceKind || object.kind == kCsgKind) return Opacity::transparent;
-  return store.surfaceOrDefault(object.surface).transparency >= kNegligible ? Opacity::transparent
-                                                                            : Opacity::opaque;
+const LocalRay& Probe::rayIn(FrameIndex frame) {
+  if (frame != lastFrame_) {
+    lastRay_ = intoFrame(model_.store(), frame, ray_, moment_);
+    lastFrame_ = frame;
+  }
+  return lastRay_;
 }
 
-double Probe::intersect(ObjectIndex index, double tMin, double tMax) {
-  const PlacedObject& object = model.store().object(index);
-  const LocalRay& local = rayIn(object.frame);
-  if (object.kind == kInstanceKind) {
-    return nearestHit(model, model.definition(model.store().instance(object)), local, moment, tMin,
+double Probe::intersectAny(const Target& target, double tMin, double tMax) {
+  const LocalRay& local = target.frame == 0 ? ray_ : rayIn(target.frame);
+  const SceneStore& store = model_.store();
+  if (target.kind == kInstanceKind) {
+    return nearestHit(model_, model_.definition(store.instance(target.body)), local, moment_, tMin,
                       tMax < kNoHit ? std::nextafter(tMax, kInfinity) : kNoHit)
         .t;
   }
-  if (object.kind == kCsgKind) return csgCrossing(model, model.store().csg(object), local, moment, tMin).t;
+  if (target.kind == kCsgKind) return csgCrossing(model_, store.csg(target.body), local, moment_, tMin).t;
   double t = kNoHit;
   [&]<class... S>(TypeList<S...>) {
-    const std::size_t kind = static_cast<std::size_t>(object.kind);
-    std::size_t i = 0;
-    (void)((kind == i++ ? (t = intersectShape(model.store().shapes<S>()[object.body], local, tMin), true)
-                        : false) ||
+    (void)((target.kind == kKindOf<S> ? (t = intersectShape(store.shapes<S>()[target.body], local, tMin), true)
+                                      : false) ||
            ...);
   }(AllShapes{});
   return t;
@@ -64,19 +60,18 @@ double Probe::intersect(ObjectIndex index, double tMin, double tMax) {
 
 Hit nearestHit(const Model& model, const Region& region, const LocalRay& ray, const Moment& moment,
                double tMin, double tExit) {
-  Probe probe{model, ray, moment};
+  Probe probe(model, ray, moment);
   Hit best;
   double limit = tExit * ray.scale;  // in the units of the region, for the accelerator
   region.bvh.nearest(
       ray.origin, ray.direction, tMin * ray.scale, limit, [&](std::uint32_t first, std::uint32_t count) {
-        for (std::uint32_t i = first; i < first + count; ++i) {
-          const ObjectIndex index = region.objects[i];
-          const double t = probe.intersect(index, tMin, std::min(best.t, tExit));
+        for (const Target& target : std::span(region.objects).subspan(first, count)) {
+          const double t = probe.intersect(target, tMin, std::min(best.t, tExit));
           if (!(t < tExit) || t > best.t) continue;
           if (t == best.t &&
-              precedence(model.store().object(index)) >= precedence(model.store().object(best.object)))
+              precedence(model.store().object(target.object)) >= precedence(model.store().object(best.object)))
             continue;
-          best = {t, index};
+          best = {t, target.object};
           limit = t * ray.scale;
         }
       });

@@ -25,29 +25,43 @@ auto withShape(const SceneStore& store, const PlacedObject& object, F&& f) {
 bool isFlat(BodyKind kind);
 bool isUnbounded(BodyKind kind);
 
-enum class Opacity : std::uint8_t { opaque, transparent };
-// Of the whole object: opaque if every surface bound in it lets no light through.
-Opacity opacityOf(const Model& model, ObjectIndex object);
+// The position of a shape in AllShapes.
+template <class S>
+inline constexpr BodyKind kKindOf = [] {
+  std::uint8_t position = 0, found = 0;
+  AllShapes::forEach([&]<class Each>() {
+    if (std::is_same_v<Each, S>) found = position;
+    ++position;
+  });
+  return BodyKind{found};
+}();
 
-struct Probe {
-  const Model& model;
-  LocalRay ray;  // in the space of the container
-  Moment moment;
-  // Many objects in a row share a frame: the last local ray is kept.
-  FrameIndex lastFrame = 0;
-  LocalRay lastRay{};
-
-  const LocalRay& rayIn(FrameIndex frame) {
-    if (model.store().frame(frame).identity) return ray;
-    if (frame != lastFrame) {
-      lastRay = intoFrame(model.store(), frame, ray, moment);
-      lastFrame = frame;
-    }
-    return lastRay;
-  }
+class Probe {
+ public:
+  // `ray` in the space of the container.
+  Probe(const Model& model, const LocalRay& ray, const Moment& moment) : model_(model), ray_(ray), moment_(moment) {}
 
   // The first t > tMin at which the ray meets the object, in world units; `tMax` is a hint that may be ignored.
-  double intersect(ObjectIndex index, double tMin, double tMax = kNoHit);
+  double intersect(const Target& target, double tMin, double tMax = kNoHit) {
+    if (target.frame == 0 && ray_.scale == 1) [[likely]] {
+      if (target.kind == kKindOf<Sphere>)
+        return model_.store().shapes<Sphere>()[target.body].intersect(ray_, tMin);
+      if (target.kind == kKindOf<Triangle>)
+        return model_.store().shapes<Triangle>()[target.body].intersect(ray_, tMin);
+    }
+    return intersectAny(target, tMin, tMax);
+  }
+
+ private:
+  double intersectAny(const Target& target, double tMin, double tMax);
+  const LocalRay& rayIn(FrameIndex frame);
+
+  const Model& model_;
+  LocalRay ray_;
+  Moment moment_;
+  // Many objects in a row share a frame: the last local ray is kept.
+  FrameIndex lastFrame_ = 0;
+  LocalRay lastRay_;
 };
 
 // The nearest hit with tMin < t < tExit; `ray` in the space of the region.
