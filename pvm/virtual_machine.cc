@@ -358,6 +358,8 @@ void VirtualMachine::joinHosts(const std::vector<HostLine>& wanted, const Machin
   const double end = seconds() + kJoinSeconds;
   std::string problem;
   for (const HostLine& host : wanted) {
+    // This process has joined from here, so this machine is in, whatever it is called in a machine that was running.
+    if (isThisMachine(host.name)) continue;
     int code = PvmAlready;
     for (;;) {
       const std::vector<std::string> present = hostNames();

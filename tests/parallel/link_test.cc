@@ -415,6 +415,16 @@ TEST_F(MachineTest, AHostThatDoesNotJoinIsNamedUnlessItMay) {
   EXPECT_EQ(machine.start({file, true}).missingHosts(), std::vector<std::string>{"nosuchhost"});
 }
 
+TEST_F(MachineTest, ThisMachineIsInARunningOneUnderAnyOfItsNames) {
+  const std::string running = machine.directory() + "/running", wanted = machine.directory() + "/wanted";
+  std::ofstream(running) << "127.0.0.1\n";
+  std::ofstream(wanted) << "localhost\n";
+  EXPECT_TRUE(machine.start({running, false}).startedHere());
+  VirtualMachine second({wanted, false});
+  EXPECT_FALSE(second.startedHere());
+  EXPECT_TRUE(second.missingHosts().empty());
+}
+
 TEST_F(MachineTest, AHostFileThatIsNotThereIsAnError) {
   EXPECT_THROW(machine.start({"/no/such/file", false}), MachineError);
 }
