@@ -23,8 +23,8 @@ class InlineVector {
 
   std::size_t size() const { return size_; }
   bool empty() const { return size_ == 0; }
-  T* data() { return size_ <= N ? inside_.data() : outside_.data(); }
-  const T* data() const { return size_ <= N ? inside_.data() : outside_.data(); }
+  T* data() { return size_ <= N ? inside_.elements.data() : outside_.data(); }
+  const T* data() const { return size_ <= N ? inside_.elements.data() : outside_.data(); }
   T* begin() { return data(); }
   T* end() { return data() + size_; }
   const T* begin() const { return data(); }
@@ -34,9 +34,9 @@ class InlineVector {
 
   void push_back(T value) {
     if (size_ < N) {
-      inside_[size_] = value;
+      inside_.elements[size_] = value;
     } else {
-      if (size_ == N) outside_.assign(inside_.begin(), inside_.end());
+      if (size_ == N) outside_.assign(inside_.elements.begin(), inside_.elements.end());
       outside_.push_back(value);
     }
     ++size_;
@@ -44,7 +44,7 @@ class InlineVector {
   void resize(std::size_t size, T value = T{}) {
     clear();
     if (size <= N) {
-      for (std::size_t i = 0; i < size; ++i) inside_[i] = value;
+      for (std::size_t i = 0; i < size; ++i) inside_.elements[i] = value;
     } else {
       outside_.assign(size, value);
     }
@@ -57,7 +57,11 @@ class InlineVector {
 
  private:
   std::size_t size_ = 0;
-  std::array<T, N> inside_;
+  // Elements begin when they are put in: clearing room for all N would take longer than most uses.
+  union Room {
+    Room() {}
+    std::array<T, N> elements;
+  } inside_;
   std::vector<T> outside_;
 };
 

@@ -29,6 +29,10 @@ Bounds Frustum::bounds() const {
 
 double Frustum::intersect(const LocalRay& ray, double tMin) const {
   const Vec3 from = ray.origin - base;
+  // The distance of the two lines, against the largest radius: most rays that miss are known by it.
+  const Vec3 across = cross(ray.direction, axis);
+  const double apart = dot(from, across), reach = endRadius * endRadius;
+  if (apart * apart > reach * dot(across, across) + kRounding * 16 * (dot(from, from) + reach)) return kNoHit;
   const double height = dot(from, axis), climb = dot(ray.direction, axis);
   const Vec3 f = from - height * axis, e = ray.direction - climb * axis;
   const double there = radius + growth() * height, widening = growth() * climb;  // F and E of the header
