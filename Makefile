@@ -70,7 +70,7 @@ $(BIN)/rayshade-tests: $(tests) $(BUILD)/libtasks.a $(BUILD)/libspd.a $(BUILD)/l
 	$(call link,-lgtest -lgtest_main -lpthread)
 $(BIN)/link-tests: $(link_test) $(pvm_door) $(BUILD)/libtasks.a $(BUILD)/libcore.a
 	$(call link,-lgtest -lpthread -lpvm3)
-$(BIN)/pvm-tests: $(pvm_tests) $(pvm_door) $(BUILD)/libtasks.a $(BUILD)/libcore.a
+$(BIN)/pvm-tests: $(pvm_tests) $(BUILD)/tests/support/program.o $(pvm_door) $(BUILD)/libtasks.a $(BUILD)/libcore.a
 	$(call link,-lgtest -lgtest_main -lpthread -lpvm3)
 $(BIN)/bench/%: $(BUILD)/tests/bench/%.o $(pvm_door) $(BUILD)/libtasks.a $(BUILD)/libspd.a $(BUILD)/libcore.a
 	$(call link,-lbenchmark -lpthread -lpvm3)
