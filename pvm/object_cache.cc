@@ -21,7 +21,7 @@ void ObjectCache::insert(CellId cell, std::vector<Item>&& items, const Exposure&
   c->model.prepare(exposure);
   const auto objects = c->model.store().objectsOf(kWorld);
   c->region = c->model.regionOf({objects.begin(), objects.end()});
-  c->bytes = sizeof(Cell) + c->model.bytes() + c->region.objects.capacity() * sizeof(ObjectIndex) + c->region.bvh.bytes();
+  c->bytes = sizeof(Cell) + c->model.bytes() + c->region.bytes();
   order_.push_front(key);
   c->place = order_.begin();
   bytes_ += c->bytes;
