@@ -19,7 +19,7 @@ struct HostProgramOptions {
   MachineOptions machine;
   std::string schedule = "data";
   std::optional<std::uint32_t> pyramids;
-  std::optional<std::string> horizon, shadows;
+  std::optional<std::string> horizon, shadows, shading;
   std::optional<double> cacheMegabytes;
 };
 
@@ -40,6 +40,7 @@ void settleSchedule(HostProgramOptions& o, std::uint32_t hosts) {
     policy.shadows = ShadowPolicy::local;
     policy.secondariesTravel = false;
   }
+  policy.shadeAtOnce = o.shading ? *o.shading == "near" : o.schedule != "data";
   if (o.pyramids) host.wishes.pyramids = *o.pyramids;
   if (o.shadows) {
     policy.shadows = *o.shadows == "forward" ? ShadowPolicy::forward
@@ -79,6 +80,8 @@ void declareHostOptions(CLI::App& app, HostProgramOptions& o) {
   app.add_option("--horizon", o.horizon, "how far pyramids go: auto, a number of cells (12c), a distance (3.5)")->group(sharing);
   app.add_option("--shadows", o.shadows, "shadow rays: forward, local or auto")
       ->check(CLI::IsMember({"forward", "local", "auto"}))->group(sharing);
+  app.add_option("--shading", o.shading, "separate: always by shade tasks; near: what has all of its colours is shaded at once")
+      ->check(CLI::IsMember({"separate", "near"}))->group(sharing);
   app.add_option("--cache", o.cacheMegabytes, "object cache of each task, in MB")->check(CLI::PositiveNumber)->group(sharing);
   app.add_option("--cells", o.host.cells, "cells of the bin-tree, about (default: by the size of the scene)")
       ->check(CLI::Range(1, 1 << 22))->group(sharing);

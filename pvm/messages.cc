@@ -24,6 +24,32 @@ TaskId chooseShadeTask(const Directory& directory, RecordId record) {
   return directory.shadeTasks[i];
 }
 
+Gathered gatheredFrom(const Expect& message) {
+  Gathered gathered;
+  gathered.light.resize(message.hit.lit.size());
+  std::size_t known = 0, pending = 0;
+  for (std::size_t point = 0; point < message.hit.lit.size(); ++point) {
+    if (message.hit.lit[point] != Lit::asked) continue;
+    if (pending < message.pending.size() && message.pending[pending] == point) {
+      ++pending;
+    } else {
+      gathered.light[point] = message.known[known++];
+    }
+  }
+  return gathered;
+}
+
+bool knownFits(const Expect& message) {
+  std::size_t asked = 0, pending = 0;
+  for (std::size_t point = 0; point < message.hit.lit.size(); ++point) {
+    if (message.hit.lit[point] > Lit::asked) return false;
+    if (message.hit.lit[point] != Lit::asked) continue;
+    ++asked;
+    if (pending < message.pending.size() && message.pending[pending] == point) ++pending;
+  }
+  return pending == message.pending.size() && asked == pending + message.known.size();
+}
+
 std::uint64_t arithmeticFingerprint() {
   std::uint64_t hash = 0;
   auto add = [&hash](double value) { hash = mixBits(hash ^ std::bit_cast<std::uint64_t>(value)); };

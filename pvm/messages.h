@@ -69,6 +69,7 @@ struct DemandPolicy {
   ShadowPolicy shadows = ShadowPolicy::automatic;
   Horizon horizon;
   bool secondariesTravel = true;        // false: pyramid tasks trace secondary rays too, with what they fetch
+  bool shadeAtOnce = false;             // what has all of its colours is shaded where it was found
   std::uint64_t cacheBytes = 64 << 20;  // of each task
   std::uint32_t outstanding = 64;       // cells asked for at a time
 };
@@ -192,6 +193,12 @@ struct Expect {
   ReplyTo to;
 };
 
+// The colours that came with an intersection, each in its place; those that are pending stay black.  Requires that they
+// fit, see knownFits().
+Gathered gatheredFrom(const Expect& message);
+// Do the lists of known and pending light points belong to this intersection?
+bool knownFits(const Expect& message);
+
 // From a pyramid task: it could do with a pyramid.
 struct PyramidWanted {
   static constexpr bool isFact = false;
@@ -247,7 +254,7 @@ void serialize(Archive& archive, Horizon& h) {
 }
 template <class Archive>
 void serialize(Archive& archive, DemandPolicy& p) {
-  archive(p.shadows, p.horizon, p.secondariesTravel, p.cacheBytes, p.outstanding);
+  archive(p.shadows, p.horizon, p.secondariesTravel, p.shadeAtOnce, p.cacheBytes, p.outstanding);
 }
 template <class Archive>
 void serialize(Archive& archive, Exhibition& e) {

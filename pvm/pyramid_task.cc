@@ -49,6 +49,7 @@ void PyramidTask::on(TaskId from, Configure message) {
 void PyramidTask::on(TaskId from, Finish) {
   Report report = desk_.report();
   report.counts = worker_.counts();
+  report.combined = worker_.combined();
   report.cache = worker_.cache().counts();
   report.shadowCache = worker_.shadowCounts();
   report.pyramids = pyramids_;

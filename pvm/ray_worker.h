@@ -56,6 +56,7 @@ class RayWorker : public GroundSource {
   ObjectCache& cache() { return cache_; }
   const CacheCounts& shadowCounts() const { return shadowCounts_; }
   std::size_t waiting() const { return parkedCount_; }
+  std::uint64_t combined() const { return combined_; }
 
   // A ray of this task has hit.  `queue` takes the transmitted and reflected rays.
   template <class Queue>
@@ -106,6 +107,7 @@ class RayWorker : public GroundSource {
   std::uint64_t serial_ = 0;  // of the next intersection found here
   std::unordered_map<std::uint32_t, std::vector<Bundle>> parked_;  // by the cell they wait for
   std::size_t parkedCount_ = 0;
+  std::uint64_t combined_ = 0;
   std::unordered_set<std::uint32_t> asked_;  // cells on their way
   std::deque<CellId> toAsk_;                 // more than may be on their way
   std::unordered_set<std::uint32_t> queued_; // in toAsk_
@@ -141,6 +143,11 @@ void RayWorker::shade(const Ray& ray, const ReplyTo& to, const Hit& hit, const M
     if (!bundle.rays.empty()) traceBundle(std::move(bundle), at_.setting.lights[l]);
   }
   expect.hit = describe(ray, hit.t, at, spawned, at_.setting);
+  if (at_.policy.shadeAtOnce && expect.pending.empty() && !spawned.transmitted && !spawned.reflected) {
+    ++combined_;
+    answer(to, combine(expect.hit, gatheredFrom(expect), at_.setting));
+    return;
+  }
   desk_.outbox.post(shader, expect);
   if (spawned.transmitted) {
     ++counts_.transmittedRays;

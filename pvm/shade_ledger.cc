@@ -4,30 +4,9 @@
 #include <algorithm>
 
 namespace rayshade {
-namespace {
-
-// Puts the colours that came with the intersection where they belong; false when they do not fit it.
-bool takeKnown(const Expect& message, Gathered& gathered) {
-  gathered.light.resize(message.hit.lit.size());
-  std::size_t known = 0, pending = 0;
-  for (std::size_t point = 0; point < message.hit.lit.size(); ++point) {
-    if (message.hit.lit[point] > Lit::asked) return false;
-    if (message.hit.lit[point] != Lit::asked) continue;
-    if (pending < message.pending.size() && message.pending[pending] == point) {
-      ++pending;
-    } else {
-      if (known == message.known.size()) return false;
-      gathered.light[point] = message.known[known++];
-    }
-  }
-  return known == message.known.size() && pending == message.pending.size();
-}
-
-}  // namespace
-
 ShadeLedger::Verdict ShadeLedger::expect(Expect&& message, Settled& out) {
-  Gathered gathered;
-  if (message.hit.lit.size() != lightPoints_ || !takeKnown(message, gathered)) return Verdict::refused;
+  if (message.hit.lit.size() != lightPoints_ || !knownFits(message)) return Verdict::refused;
+  Gathered gathered = gatheredFrom(message);
   // Most intersections come with all their colours.
   const bool complete = message.pending.empty() && !message.hit.transmitted && !message.hit.reflected;
   if (complete) {

@@ -86,7 +86,8 @@ void VoxelTask::on(TaskId from, CellWanted message) {
   const auto key = static_cast<std::uint32_t>(message.cell);
   if (!cellObjects_.contains(key)) {
     std::vector<CellId> cells;
-    for (ObjectIndex object : region->objects) {
+    for (const Target& target : region->objects) {
+      const ObjectIndex object = target.object;
       cells.clear();
       cellsTouching(tree, model_->boundsOf(object), cells);
       for (CellId cell : cells)
@@ -112,6 +113,7 @@ void VoxelTask::on(TaskId, CellItems message) {
 void VoxelTask::on(TaskId from, Finish) {
   Report report = desk_.report();
   report.counts = worker_.counts();
+  report.combined = worker_.combined();
   report.cache = worker_.cache().counts();
   report.shadowCache = worker_.shadowCounts();
   report.cellsServed = cellsServed_;
