@@ -58,6 +58,7 @@ LocalProgress followLocally(const BinTree& tree, GroundSource& source, ShadowRay
   return walkLocally(tree, source, shadow.ray.origin, shadow.ray.direction, shadow.distance, unit,
                      [&](const Ground& ground, double tExit) {
                        ++counts.visits;
+                       shadow.occluder = kNone;  // an object of another model
                        return !passShadow(*ground.model, *ground.region, shadow, tExit, setting);
                      });
 }
