@@ -1,0 +1,131 @@
+// What travels, rays or objects, and how far pyramids go, is a question of time: the picture has the same bits.
+//
+// RAYSHADE_TEST_SEEDS=N tries N random scenes instead of the few of every day.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include "tests/support/compare_pictures.h"
+#include "tests/support/random_scene.h"
+#include "tests/support/render_text.h"
+#include "tests/support/suite.h"
+
+namespace rayshade {
+namespace {
+
+// Takes a few bits at a time.
+struct Dice {
+  std::uint64_t state;
+  std::uint32_t below(std::uint32_t n) {
+    state = mixBits(state);
+    return static_cast<std::uint32_t>(state % n);
+  }
+  template <class T>
+  T one(std::initializer_list<T> of) {
+    return of.begin()[below(static_cast<std::uint32_t>(of.size()))];
+  }
+};
+
+HostOptions randomSchedule(std::uint64_t seed) {
+  Dice dice{mixBits(seed)};
+  HostOptions host;
+  host.wishes.voxels = 1 + dice.below(4);
+  host.wishes.pyramids = dice.below(4);
+  host.wishes.shades = 1 + dice.below(2);
+  host.wishes.clusters = 1 + dice.below(3);
+  host.voxelsPerTask = 1 + dice.below(2);
+  host.window = dice.one({5u, 300u, 4096u});
+  host.cells = dice.one({1u, 8u, 60u, 400u});
+  host.tileSamples = dice.one({1u, 16u, 256u});
+  host.dynamicShading = dice.below(4) == 0;
+  DemandPolicy& policy = host.policy;
+  policy.shadows = dice.one({ShadowPolicy::forward, ShadowPolicy::local, ShadowPolicy::automatic});
+  policy.secondariesTravel = dice.below(3) != 0;
+  policy.shadeAtOnce = dice.below(2) == 0;
+  policy.cacheBytes = dice.one<std::uint64_t>({0, 1, 20'000, 1 << 26});  // none, no room for any cell, a few, all
+  policy.outstanding = dice.one({1u, 64u});
+  policy.horizon = dice.one<Horizon>({{Horizon::Kind::automatic, 0},
+                                      {Horizon::Kind::cells, 0},
+                                      {Horizon::Kind::cells, 3},
+                                      {Horizon::Kind::cells, 1e9},
+                                      {Horizon::Kind::distance, 0},
+                                      {Horizon::Kind::distance, 8}});
+  return host;
+}
+
+TEST(Schedules, AnyPolicyAnyHorizonAnyCacheGivesTheSameBits) {
+  const std::uint64_t seeds = numberFromEnvironment("RAYSHADE_TEST_SEEDS", 60);
+  std::uint64_t pyramidRays = 0, forwarded = 0, evicted = 0, shadowCells = 0;
+  for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+    SCOPED_TRACE("scene seed " + std::to_string(seed));
+    const Job job = jobOfText(randomScene(seed));
+    const Rendered expected = renderSequentially(job);
+    for (std::uint64_t trial = 0; trial < 3; ++trial) {
+      SCOPED_TRACE("trial " + std::to_string(trial));
+      const RenderedByTasks got =
+          renderByTasks(job, randomSchedule(7 * seed + trial), {.seed = seed + 1000 * trial});
+      ASSERT_EQ(difference(got.frames, expected.frames), "");
+      ASSERT_EQ(got.summary.successions, 0);
+      for (const TaskSummary& task : got.summary.tasks) {
+        ASSERT_EQ(task.report.refused, 0u);
+        ASSERT_EQ(task.report.stale, 0u);
+        pyramidRays += task.report.pyramidRays;
+        forwarded += task.report.forwardedRays;
+        evicted += task.report.cache.evicted;
+        shadowCells += task.report.shadowCache.hits;
+      }
+    }
+  }
+  EXPECT_GT(pyramidRays, forwarded);
+  EXPECT_GT(forwarded, 0u) << "no ray went beyond a horizon";
+  EXPECT_GT(evicted, 0u) << "no cache was ever full";
+  EXPECT_GT(shadowCells, 0u) << "no shadow ray used a fetched cell";
+}
+
+TEST(Schedules, DeathsOfAnyKindOfTaskLeaveThePictureAsItIs) {
+  const std::uint64_t seeds = numberFromEnvironment("RAYSHADE_TEST_SEEDS", 60);
+  int deaths = 0;
+  for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const Job job = jobOfText(randomScene(seed % 8));
+    HostOptions host = randomSchedule(90'000 + seed);
+    host.wishes.pyramids = std::max(1u, host.wishes.pyramids);
+    SimulatedMachine::Options machine{.seed = seed};
+    machine.movesPerDeath = 300;
+    machine.mostDeaths = 3;
+    const RenderedByTasks got = renderByTasks(job, host, machine);
+    ASSERT_EQ(difference(got.frames, renderSequentially(job).frames), "");
+    deaths += got.deaths;
+  }
+  EXPECT_GT(deaths, 60);
+}
+
+TEST(Schedules, ScenesOfTheSuiteHaveTheSameBits) {
+  std::uint64_t number = 0;
+  for (const SuiteScene& scene : suiteScenes()) {
+    SCOPED_TRACE(scene.name);
+    CurrentDirectory suite(kSuiteDirectory);
+    Job job = jobOf(scene.options + " " + scene.name + ".ray");
+    job.options.resolution = {40, 30};
+    job.options.window = {0, 39, 0, 29};
+    HostOptions host = randomSchedule(70'000 + number);
+    host.wishes.pyramids = 1 + static_cast<std::uint32_t>(number % 2);
+    EXPECT_EQ(difference(renderByTasks(job, host, {.seed = number}).frames, renderSequentially(job).frames), "");
+    ++number;
+  }
+}
+
+TEST(Schedules, ACellThatIsInUseStaysInACacheWithoutRoom) {
+  Job job = jobOfText(randomScene(5));
+  HostOptions host;
+  host.wishes = {.voxels = 2, .pyramids = 2, .shades = 1};
+  host.cells = 200;
+  host.policy.cacheBytes = 0;
+  host.policy.shadows = ShadowPolicy::local;
+  host.policy.secondariesTravel = false;
+  host.policy.horizon = {Horizon::Kind::cells, 1e9};
+  const RenderedByTasks got = renderByTasks(job, host, {.seed = 3});
+  EXPECT_EQ(difference(got.frames, renderSequentially(job).frames), "");
+}
+
+}  // namespace
+}  // namespace rayshade
