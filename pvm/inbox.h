@@ -24,7 +24,8 @@ bool deliver(Task& task, TaskId from, Epoch epoch, Reader& reader, Traffic& traf
   ++traffic.messagesIn;
   if constexpr (kListed<M, typename Task::Accepted>) {
     static_assert(requires { task.on(from, std::move(message)); }, "an accepted message has no handler");
-    if (!M::isFact && epoch != task.epoch()) {
+    // Epochs are counted from 1: before the first Configure a task has nothing that it could work with.
+    if (!M::isFact && (epoch != task.epoch() || epoch == Epoch{})) {
       ++traffic.stale;
     } else {
       task.on(from, std::move(message));

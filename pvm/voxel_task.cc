@@ -6,9 +6,16 @@
 
 namespace rayshade {
 
+// Rays of samples that nobody needs any more may still be on their way: until the next Configure there is nothing here
+// that could trace them, so no work is taken.
 void VoxelTask::on(TaskId, Forget) {
   model_.emplace();
   itemsAreNew_ = true;
+  desk_.epoch = Epoch{};
+  raysByDepth_.clear();
+  waitingRays_ = 0;
+  shadows_.clear();
+  regions_.clear();
 }
 
 void VoxelTask::on(TaskId from, Items message) {

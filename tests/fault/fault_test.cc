@@ -51,7 +51,9 @@ const KnownJob& glassAndMirrors() {
 // As patient as virtual time allows.
 HostOptions host(std::uint32_t voxels, std::uint32_t shades, std::uint32_t window) {
   HostOptions options;
-  options.wishes = {voxels, shades};
+  options.wishes.voxels = voxels;
+  options.wishes.shades = shades;
+  options.policy.shadows = ShadowPolicy::forward;
   options.window = window;
   options.pingAfter = 0.05;
   options.killAfter = 0.2;
@@ -65,6 +67,9 @@ HostOptions randomHost(std::uint64_t seed) {
   HostOptions options = host(1 + static_cast<std::uint32_t>(bits % 4),
                              1 + static_cast<std::uint32_t>(bits / 4 % 2), windows[bits / 8 % 4]);
   options.voxelsPerTask = 1 + static_cast<std::uint32_t>(bits / 32 % 2);
+  options.wishes.pyramids = static_cast<std::uint32_t>(bits / 64 % 3);
+  options.policy.shadows = ShadowPolicy{static_cast<std::uint8_t>(bits / 384 % 3)};
+  options.wishes.clusters = 1 + static_cast<std::uint32_t>(bits / 192 % 2);
   return options;
 }
 

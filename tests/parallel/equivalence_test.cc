@@ -16,25 +16,36 @@ namespace {
 struct Split {
   std::uint32_t voxelTasks, voxelsPerTask, shades, window;
   std::uint64_t delivery;
+  std::uint32_t pyramids = 0, clusters = 1;
 };
 
 std::ostream& operator<<(std::ostream& out, const Split& s) {
   return out << "--voxels " << s.voxelTasks << " --voxels-per-task " << s.voxelsPerTask << " --shades "
-             << s.shades << " --window " << s.window << ", delivery seed " << s.delivery;
+             << s.shades << " --window " << s.window << " --pyramids " << s.pyramids << " --clusters "
+             << s.clusters << ", delivery seed " << s.delivery;
 }
 
 Split randomSplit(std::uint64_t seed) {
   const std::uint64_t bits = mixBits(seed);
   constexpr std::uint32_t windows[] = {1, 7, 256, 4096};
-  return {1 + static_cast<std::uint32_t>(bits % 8), 1 + static_cast<std::uint32_t>(bits / 8 % 3),
-          1 + static_cast<std::uint32_t>(bits / 24 % 3), windows[bits / 72 % 4], bits / 288};
+  return {1 + static_cast<std::uint32_t>(bits % 8),
+          1 + static_cast<std::uint32_t>(bits / 8 % 3),
+          1 + static_cast<std::uint32_t>(bits / 24 % 3),
+          windows[bits / 72 % 4],
+          bits / 288,
+          static_cast<std::uint32_t>(bits / 288 % 3),
+          1 + static_cast<std::uint32_t>(bits / 864 % 2)};
 }
 
 RenderedByTasks renderSplit(const Job& job, const Split& split) {
   HostOptions host;
-  host.wishes = {split.voxelTasks, split.shades};
+  host.wishes.voxels = split.voxelTasks;
+  host.wishes.shades = split.shades;
+  host.wishes.pyramids = split.pyramids;
+  host.wishes.clusters = split.clusters;
   host.voxelsPerTask = split.voxelsPerTask;
   host.window = split.window;
+  host.policy.shadows = ShadowPolicy{static_cast<std::uint8_t>(split.delivery % 3)};
   SimulatedMachine::Options machine;
   machine.seed = split.delivery;
   return renderByTasks(job, host, machine);
@@ -79,7 +90,10 @@ TEST(Equivalence, TheTasksTogetherDoTheWorkOfOneProcessOverTheSameVoxels) {
     SCOPED_TRACE("scene seed " + std::to_string(seed));
     Job job = jobOfText(randomScene(seed));
     job.options.samples = 1;  // no guesses
-    const Split split = randomSplit(1000 + seed);
+    Split split = randomSplit(1000 + seed);
+    split.pyramids = 0;   // they fetch cells instead of sending rays: other visits
+    split.clusters = 1;   // copies: every object is owned more than once
+    split.delivery *= 3;  // shadow rays travel, too: ShadowPolicy::forward
     SCOPED_TRACE(split);
     const Rendered expected = renderSequentially(job, split.voxelTasks * split.voxelsPerTask);
     const RenderedByTasks got = renderSplit(job, split);
