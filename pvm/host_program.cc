@@ -27,12 +27,12 @@ struct HostProgramOptions {
 void settleSchedule(HostProgramOptions& o, std::uint32_t hosts) {
   HostOptions& host = o.host;
   DemandPolicy& policy = host.policy;
-  if (o.schedule == "data") {
-    policy.shadows = ShadowPolicy::forward;
-  } else if (o.schedule == "hybrid") {
+  if (o.schedule == "hybrid") {
     host.wishes.pyramids = hosts;
+    policy.shadows = ShadowPolicy::automatic;
   } else if (o.schedule == "pipelined") {
     host.wishes.pyramids = 2 * hosts;
+    policy.shadows = ShadowPolicy::automatic;
     policy.horizon = {Horizon::Kind::cells, 1e9};
   } else if (o.schedule == "demand") {
     host.wishes.pyramids = 2 * hosts;
@@ -41,6 +41,8 @@ void settleSchedule(HostProgramOptions& o, std::uint32_t hosts) {
     policy.secondariesTravel = false;
   }
   policy.shadeAtOnce = o.shading ? *o.shading == "near" : o.schedule != "data";
+  // Every cluster has somebody to work for.
+  if (host.wishes.pyramids > 0) host.wishes.pyramids = std::max(host.wishes.pyramids, host.wishes.clusters);
   if (o.pyramids) host.wishes.pyramids = *o.pyramids;
   if (o.shadows) {
     policy.shadows = *o.shadows == "forward" ? ShadowPolicy::forward

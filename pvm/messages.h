@@ -66,7 +66,7 @@ struct Horizon {
   double value = 0;  // cells, or world units from the eye
 };
 struct DemandPolicy {
-  ShadowPolicy shadows = ShadowPolicy::automatic;
+  ShadowPolicy shadows = ShadowPolicy::forward;
   Horizon horizon;
   bool secondariesTravel = true;        // false: pyramid tasks trace secondary rays too, with what they fetch
   bool shadeAtOnce = false;             // what has all of its colours is shaded where it was found

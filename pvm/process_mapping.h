@@ -2,9 +2,9 @@
 //
 // A pure function of the hosts and of what is wished for.  Every task goes to the host where, with it, least work per
 // speed is expected:
-//   - pyramid-trace tasks first, on the host task's own machine while a processor is expected to be free there: "scheduled
-//     to processors that are located close to the host processor";
 //   - voxel-trace tasks spread over all hosts, cluster by cluster;
+//   - pyramid-trace tasks on the host task's own machine, "close to the host processor", unless another one is expected to
+//     be less than half as busy;
 //   - shade tasks last, "on those processors where due to the tracing processes, the load is expected to be low".
 // The successor of a dead task comes from the same function without the dead host.
 // SPDX-License-Identifier: BSD-3-Clause

@@ -4,7 +4,7 @@
 namespace rayshade {
 namespace {
 
-// A ray on the wire, and the answer that comes back; measured on the standard scenes (docs/wire-format.md).
+// An estimate of a ray on the wire with the answer that comes back: a shadow ray takes 90 to 110 bytes, an answer 14 to 38.
 constexpr double kBytesPerForward = 130;
 // How many bundles are expected to use a cell once it is here: shadow rays of neighbouring hits go the same way.
 constexpr double kExpectedUses = 64;

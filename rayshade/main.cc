@@ -61,6 +61,11 @@ int run(const Options& options) {
   times.read = lap();
   const bool quiet = options.quiet || head.report.quiet;
   const bool report = options.verbose || !options.verboseFile.empty() || (head.report.wanted && head.report.verbose);
+  // As in rayshade: lines that stay, when they were asked for.
+  const std::int32_t everyRows = quiet                      ? 0
+                                 : options.reportEvery      ? *options.reportEvery
+                                 : head.report.wanted       ? head.report.everyRows
+                                                            : 0;
   const std::int32_t first = head.picture.firstFrame;
   for (std::int32_t frame = first; frame < first + head.picture.frames; ++frame) {
     std::optional<PictureFormat> format = options.format;
@@ -79,6 +84,9 @@ int run(const Options& options) {
           writer.row(row);
           if (report) appendRow(sum, row);
           ++rows;
+          if (everyRows > 0 && rows % everyRows == 0)
+            std::fprintf(stderr, "finished line %d of %d (%" PRIu64 " pixels)\n", rows, area.height,
+                         static_cast<std::uint64_t>(rows) * static_cast<std::uint64_t>(area.width));
           progress.show(rows, area.height, static_cast<std::uint64_t>(rows) * static_cast<std::uint64_t>(area.width), "pixels");
         });
     writer.finish();

@@ -17,7 +17,6 @@ struct Options {
   std::optional<PictureFormat> format;
   std::uint64_t seed = 0;
   bool quiet = false, verbose = false;
-  bool printPlan = false;
   std::string verboseFile;            // -V: the report goes there
 
   // What is said on the command line; nothing: the scene file decides.

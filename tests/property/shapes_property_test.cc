@@ -106,6 +106,7 @@ PhongTriangle scaled(const PhongTriangle& t, double k) { return {scaled(t.face, 
 TriangleUv scaled(const TriangleUv& t, double k) { return {scaled(t.phong, k), t.uv}; }
 Polygon scaled(Polygon p, double k) {
   for (Vec3& corner : p.corners) corner = k * corner;
+  p.prepare();
   return p;
 }
 
