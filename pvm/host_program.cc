@@ -64,50 +64,76 @@ void declareHostOptions(CLI::App& app, HostProgramOptions& o) {
   declareOptions(app, o.render);
   const std::string tasks = "Tasks";
   app.add_option("--hosts", o.machine.hostFile, "PVM host file; without: this machine alone")->group(tasks);
-  app.add_flag("--missing-hosts", o.machine.allowMissingHosts, "go on without hosts that do not answer")->group(tasks);
+  app.add_flag("--missing-hosts", o.machine.allowMissingHosts, "go on without hosts that do not answer")
+      ->group(tasks);
   app.add_option("--voxels", o.host.wishes.voxels, "voxel-trace tasks (default: two per host)")
-      ->check(CLI::Range(1, 4096))->group(tasks);
+      ->check(CLI::Range(1, 4096))
+      ->group(tasks);
   app.add_option("--shades", o.host.wishes.shades, "shade tasks (default: one per four voxel-trace tasks)")
-      ->check(CLI::Range(1, 4096))->group(tasks);
+      ->check(CLI::Range(1, 4096))
+      ->group(tasks);
   app.add_option("--voxels-per-task", o.host.voxelsPerTask, "voxels that each voxel-trace task holds")
-      ->check(CLI::Range(1, 64))->group(tasks);
-  app.add_option("--pyramids", o.pyramids, "pyramid-trace tasks (default: by the schedule)")->check(CLI::Range(0, 4096))->group(tasks);
-  app.add_option("--clusters", o.host.wishes.clusters, "copies of the model, each distributed over voxel-trace tasks")
-      ->check(CLI::Range(1, 64))->group(tasks);
+      ->check(CLI::Range(1, 64))
+      ->group(tasks);
+  app.add_option("--pyramids", o.pyramids, "pyramid-trace tasks (default: by the schedule)")
+      ->check(CLI::Range(0, 4096))
+      ->group(tasks);
+  app.add_option("--clusters", o.host.wishes.clusters,
+                 "copies of the model, each distributed over voxel-trace tasks")
+      ->check(CLI::Range(1, 64))
+      ->group(tasks);
   const std::string sharing = "What travels: rays or objects";
   app.add_option("--schedule", o.schedule,
-                 "data: all rays travel; hybrid: primary and shadow rays are traced where they begin, with fetched cells; "
+                 "data: all rays travel; hybrid: primary and shadow rays are traced where they begin, with "
+                 "fetched cells; "
                  "pipelined: more of that, farther; demand: every ray, nothing travels but objects")
-      ->check(CLI::IsMember({"data", "hybrid", "pipelined", "demand"}))->group(sharing);
-  app.add_option("--horizon", o.horizon, "how far pyramids go: auto, a number of cells (12c), a distance (3.5)")->group(sharing);
+      ->check(CLI::IsMember({"data", "hybrid", "pipelined", "demand"}))
+      ->group(sharing);
+  app.add_option("--horizon", o.horizon,
+                 "how far pyramids go: auto, a number of cells (12c), a distance (3.5)")
+      ->group(sharing);
   app.add_option("--shadows", o.shadows, "shadow rays: forward, local or auto")
-      ->check(CLI::IsMember({"forward", "local", "auto"}))->group(sharing);
-  app.add_option("--shading", o.shading, "separate: always by shade tasks; near: what has all of its colours is shaded at once")
-      ->check(CLI::IsMember({"separate", "near"}))->group(sharing);
-  app.add_option("--cache", o.cacheMegabytes, "object cache of each task, in MB")->check(CLI::PositiveNumber)->group(sharing);
+      ->check(CLI::IsMember({"forward", "local", "auto"}))
+      ->group(sharing);
+  app.add_option("--shading", o.shading,
+                 "separate: always by shade tasks; near: what has all of its colours is shaded at once")
+      ->check(CLI::IsMember({"separate", "near"}))
+      ->group(sharing);
+  app.add_option("--cache", o.cacheMegabytes, "object cache of each task, in MB")
+      ->check(CLI::PositiveNumber)
+      ->group(sharing);
   app.add_option("--cells", o.host.cells, "cells of the bin-tree, about (default: by the size of the scene)")
-      ->check(CLI::Range(1, 1 << 22))->group(sharing);
-  app.add_option("--tile", o.host.tileSamples, "samples of a pyramid, at most")->check(CLI::Range(1, 65536))->group(sharing);
-  app.add_flag("--dynamic-shading", o.host.dynamicShading, "choose shade tasks by how busy they are")->group(tasks);
-  app.add_option("--window", o.host.window, "samples on their way at a time")->check(CLI::Range(1, 1 << 24))->group(tasks);
+      ->check(CLI::Range(1, 1 << 22))
+      ->group(sharing);
+  app.add_option("--tile", o.host.tileSamples, "samples of a pyramid, at most")
+      ->check(CLI::Range(1, 65536))
+      ->group(sharing);
+  app.add_flag("--dynamic-shading", o.host.dynamicShading, "choose shade tasks by how busy they are")
+      ->group(tasks);
+  app.add_option("--window", o.host.window, "samples on their way at a time")
+      ->check(CLI::Range(1, 1 << 24))
+      ->group(tasks);
   app.add_flag("--mixed", o.host.mixedArithmetic, "go on when hosts compute different bits")->group(tasks);
 }
 
 double megabytes(std::uint64_t bytes) { return 1e-6 * static_cast<double>(bytes); }
 
 void writeTable(std::FILE* to, const HostSummary& s, std::uint64_t pictureSum) {
-  std::fprintf(to, "%-21s %-12s %9s %9s %10s %9s %9s %8s %8s %7s %7s %7s %7s\n", "task", "host", "objects", "rays",
-               "visits", "hits", "shaded", "msg in", "msg out", "MB in", "MB out", "busy s", "peak MB");
+  std::fprintf(to, "%-21s %-12s %9s %9s %10s %9s %9s %8s %8s %7s %7s %7s %7s\n", "task", "host", "objects",
+               "rays", "visits", "hits", "shaded", "msg in", "msg out", "MB in", "MB out", "busy s",
+               "peak MB");
   for (const TaskSummary& task : s.tasks) {
     const Report& r = task.report;
     const TraceCounts& c = r.counts;
-    const std::string name = std::string(programName(task.placement.role)).substr(9) + " " +
-                             std::to_string(task.placement.index);
-    std::fprintf(to, "%-21s %-12.12s %9" PRIu64 " %9" PRIu64 " %10" PRIu64 " %9" PRIu64 " %9" PRIu64 " %8" PRIu64
+    const std::string name =
+        std::string(programName(task.placement.role)).substr(9) + " " + std::to_string(task.placement.index);
+    std::fprintf(to,
+                 "%-21s %-12.12s %9" PRIu64 " %9" PRIu64 " %10" PRIu64 " %9" PRIu64 " %9" PRIu64 " %8" PRIu64
                  " %8" PRIu64 " %7.1f %7.1f %7.2f %7.1f\n",
                  name.c_str(), task.placement.host.c_str(), task.objects,
-                 c.primaryRays + c.transmittedRays + c.reflectedRays + c.shadowRays, c.visits, c.hits, r.combined, r.messagesIn,
-                 r.messagesOut, megabytes(r.bytesIn), megabytes(r.bytesOut), r.busySeconds, megabytes(r.peakMemory));
+                 c.primaryRays + c.transmittedRays + c.reflectedRays + c.shadowRays, c.visits, c.hits,
+                 r.combined, r.messagesIn, r.messagesOut, megabytes(r.bytesIn), megabytes(r.bytesOut),
+                 r.busySeconds, megabytes(r.peakMemory));
   }
   for (const TaskSummary& task : s.tasks) {
     const Report& r = task.report;
@@ -115,24 +141,28 @@ void writeTable(std::FILE* to, const HostSummary& s, std::uint64_t pictureSum) {
     auto percent = [](std::uint64_t part, std::uint64_t whole) {
       return whole == 0 ? 100.0 : 100.0 * static_cast<double>(part) / static_cast<double>(whole);
     };
-    std::fprintf(to, "%s %u: cache %.2f %% hits (shadow rays %.2f %%), %" PRIu64 " cells fetched, %.2f MB, %" PRIu64 " thrown out",
-                 programName(task.placement.role) + 9, task.placement.index, percent(r.cache.hits, r.cache.asked),
-                 percent(r.shadowCache.hits, r.shadowCache.asked), r.cache.fetched, megabytes(r.cache.fetchedBytes),
-                 r.cache.evicted);
+    std::fprintf(to,
+                 "%s %u: cache %.2f %% hits (shadow rays %.2f %%), %" PRIu64
+                 " cells fetched, %.2f MB, %" PRIu64 " thrown out",
+                 programName(task.placement.role) + 9, task.placement.index,
+                 percent(r.cache.hits, r.cache.asked), percent(r.shadowCache.hits, r.shadowCache.asked),
+                 r.cache.fetched, megabytes(r.cache.fetchedBytes), r.cache.evicted);
     if (r.pyramids > 0)
-      std::fprintf(to, "; %" PRIu64 " pyramids, %" PRIu64 " of %" PRIu64 " rays went on to the voxels", r.pyramids,
-                   r.forwardedRays, r.pyramidRays);
+      std::fprintf(to, "; %" PRIu64 " pyramids, %" PRIu64 " of %" PRIu64 " rays went on to the voxels",
+                   r.pyramids, r.forwardedRays, r.pyramidRays);
     std::fprintf(to, "\n");
   }
   double cpu = 0;
   for (const TaskSummary& task : s.tasks) cpu += task.report.cpuSeconds;
-  std::fprintf(to, "host: %.1f MB in, %.1f MB out; at most %" PRIu64 " samples on their way; %.3f s start, %.3f s trace; "
+  std::fprintf(to,
+               "host: %.1f MB in, %.1f MB out; at most %" PRIu64
+               " samples on their way; %.3f s start, %.3f s trace; "
                "tasks' CPU %.3f s\n",
                megabytes(s.traffic.bytesIn), megabytes(s.traffic.bytesOut), s.peakInFlight, s.startSeconds,
                s.traceSeconds, cpu);
   if (s.successions > 0)
-    std::fprintf(to, "%d tasks died and were replaced, %" PRIu64 " samples issued again, %u epochs\n", s.successions,
-                 s.reissued, s.epochs);
+    std::fprintf(to, "%d tasks died and were replaced, %" PRIu64 " samples issued again, %u epochs\n",
+                 s.successions, s.reissued, s.epochs);
   std::fprintf(to, "picture checksum %016" PRIx64 "\n", pictureSum);
 }
 
@@ -142,7 +172,8 @@ int run(HostProgramOptions& options) {
   SceneHead head = parseScene(options.render.parse, surveySink);
   applyOptions(options.render, head);
   Survey survey = surveySink.survey();
-  if (survey.objects == 0) throw SceneError(sceneName(options.render) + ": error: there is nothing to be rendered");
+  if (survey.objects == 0)
+    throw SceneError(sceneName(options.render) + ": error: there is nothing to be rendered");
   const View view = *viewOf(head.camera, head.picture);
   const PixelArea area = *pixelArea(head.picture);
   const std::string outputFile = chooseOutput(options.render, head);
@@ -166,7 +197,8 @@ int run(HostProgramOptions& options) {
   PvmLink link;
   options.host.seed = options.render.seed;
   settleSchedule(options, static_cast<std::uint32_t>(link.hosts().size()));
-  HostTask host(link, [&](SceneSink& sink) { parseScene(again, sink); }, survey, head.setting, options.host);
+  HostTask host(
+      link, [&](SceneSink& sink) { parseScene(again, sink); }, survey, head.setting, options.host);
   Picture sum{area.width, area.height, {}};
   for (std::int32_t frame = first; frame < first + head.picture.frames; ++frame) {
     if (frame != first) writer = open(frame);
@@ -208,7 +240,9 @@ int runHostProgram(int argc, char** argv) {
   options.render.parse.warn = [&](const std::string& message) {
     if (!options.render.quiet) std::fprintf(stderr, "%s\n", message.c_str());
   };
-  options.render.parse.print = [](const std::string& message) { std::fprintf(stderr, "%s\n", message.c_str()); };
+  options.render.parse.print = [](const std::string& message) {
+    std::fprintf(stderr, "%s\n", message.c_str());
+  };
   try {
     return run(options);
   } catch (const SceneError& error) {

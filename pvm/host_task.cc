@@ -65,7 +65,8 @@ bool HostTask::startMissing() {
     if (slave.task != kNobody) continue;
     missing = true;
     if (slave.summary.task != kNobody && ++successions_ > options_.mostSuccessions)
-      throw HostError("tasks keep dying: given up after " + std::to_string(options_.mostSuccessions) + " successors");
+      throw HostError("tasks keep dying: given up after " + std::to_string(options_.mostSuccessions) +
+                      " successors");
     const std::vector<HostInfo> hosts = machine_.hosts();
     const auto mapped = mapProcesses(hosts, options_.wishes);
     const bool stands = std::any_of(hosts.begin(), hosts.end(),
@@ -76,8 +77,10 @@ bool HostTask::startMissing() {
       if (hosts[h].name == slave.placement.host) continue;
       const std::string problem = spawned.problem;
       spawned = machine_.spawn(slave.placement.role, hosts[h].name);
-      if (spawned.task == kNobody) spawned.problem = problem;
-      else slave.placement.host = hosts[h].name;
+      if (spawned.task == kNobody)
+        spawned.problem = problem;
+      else
+        slave.placement.host = hosts[h].name;
     }
     if (spawned.task == kNobody) throw HostError(spawned.problem);
     slave.task = spawned.task;
@@ -178,15 +181,23 @@ bool HostTask::configure() {
   wanting_.clear();
   for (Slave& slave : slaves_) {
     slave.ready = false;
-    outbox_.post(slave.task, Configure{epoch_, setting_, tree_, directory_, slave.placement.index, exposure_,
-                                       options_.policy, {*view_, *picture_, options_.seed}, cellBytes_,
+    outbox_.post(slave.task, Configure{epoch_,
+                                       setting_,
+                                       tree_,
+                                       directory_,
+                                       slave.placement.index,
+                                       exposure_,
+                                       options_.policy,
+                                       {*view_, *picture_, options_.seed},
+                                       cellBytes_,
                                        options_.dynamicShading ? kLoadEvery : 0.0});
   }
   outbox_.flush();
   std::vector<TaskId> peers;
   for (const Slave& slave : slaves_) peers.push_back(slave.task);
   machine_.connect(peers);
-  while (!someoneDied_ && !std::all_of(slaves_.begin(), slaves_.end(), [](const Slave& s) { return s.ready; }))
+  while (!someoneDied_ &&
+         !std::all_of(slaves_.begin(), slaves_.end(), [](const Slave& s) { return s.ready; }))
     takeEvents(1);
   return !someoneDied_;
 }
@@ -211,7 +222,8 @@ void HostTask::handle(const LinkEvent& event) {
       for (Slave& slave : slaves_)
         if (slave.placement.host == event.host) lost(slave);
       break;
-    case LinkEvent::Kind::hostJoined: break;  // it is there for the next successor
+    case LinkEvent::Kind::hostJoined:
+      break;  // it is there for the next successor
   }
 }
 
@@ -250,11 +262,13 @@ void HostTask::on(TaskId from, Ready message) {
   Slave* slave = find(from);
   if (slave == nullptr || message.epoch != epoch_) return;
   if (message.arithmetic != arithmeticFingerprint() && !options_.mixedArithmetic)
-    throw HostError("host " + slave->placement.host +
-                    " computes other bits than this one (another processor?): the picture would depend on who traced "
-                    "what; --mixed goes on all the same");
+    throw HostError(
+        "host " + slave->placement.host +
+        " computes other bits than this one (another processor?): the picture would depend on who traced "
+        "what; --mixed goes on all the same");
   if (message.leftOut > 0)
-    throw HostError("task " + std::string(programName(slave->placement.role)) + " on " + slave->placement.host +
+    throw HostError("task " + std::string(programName(slave->placement.role)) + " on " +
+                    slave->placement.host +
                     " got items that do not fit together: " + std::to_string(message.leftOut));
   slave->ready = true;
   slave->summary.objects = message.objects;
@@ -352,14 +366,15 @@ void HostTask::renderFrame(const View& view, const PictureSpec& picture, std::in
   picture_ = &picture;
   exposure_ = exposureOf(picture, frame);
   if (survey_.moves) surveyAgain();
-  const auto voxelTasks = static_cast<std::uint32_t>(
-      std::count_if(slaves_.begin(), slaves_.end(), [](const Slave& s) { return s.placement.role == Role::voxelTrace; }));
+  const auto voxelTasks = static_cast<std::uint32_t>(std::count_if(
+      slaves_.begin(), slaves_.end(), [](const Slave& s) { return s.placement.role == Role::voxelTrace; }));
   directory_.clusters = std::max(1u, options_.wishes.clusters);
   const std::uint32_t perCluster = voxelTasks / directory_.clusters;
   const std::uint32_t voxels = perCluster * std::max(1u, options_.voxelsPerTask);
   // A cell is what is fetched at a time: small enough to be a part, large enough to be worth a message.
   constexpr std::uint64_t kObjectsPerCell = 128;
-  const auto bySize = static_cast<std::uint32_t>(std::min<std::uint64_t>(survey_.objects / kObjectsPerCell, 1 << 16));
+  const auto bySize =
+      static_cast<std::uint32_t>(std::min<std::uint64_t>(survey_.objects / kObjectsPerCell, 1 << 16));
   const bool fetches = !directory_.pyramidTasks.empty() || options_.wishes.pyramids > 0 ||
                        options_.policy.shadows != ShadowPolicy::forward;
   const std::uint32_t cells = options_.cells > 0 ? options_.cells : fetches ? bySize : voxels;

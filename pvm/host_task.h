@@ -31,13 +31,13 @@ struct HostOptions {
   std::uint32_t cells = 0;          // of the bin-tree, about; 0: by the size of the scene
   std::uint32_t tileSamples = 256;  // of a pyramid, at most
   DemandPolicy policy;
-  bool dynamicShading = false;      // shade tasks chosen by how busy they are
+  bool dynamicShading = false;  // shade tasks chosen by how busy they are
   std::uint64_t seed = 0;
-  bool mixedArithmetic = false;     // go on when hosts compute different bits
-  int mostSuccessions = 100;        // deaths after which the render is given up
-  double pingAfter = 10;            // seconds of silence until a task is asked whether it lives
-  double killAfter = 30;            // seconds of silence, asked and no answer, until it counts as hanging
-  double patienceAtStart = 600;     // the same while tasks read their share of the model
+  bool mixedArithmetic = false;  // go on when hosts compute different bits
+  int mostSuccessions = 100;     // deaths after which the render is given up
+  double pingAfter = 10;         // seconds of silence until a task is asked whether it lives
+  double killAfter = 30;         // seconds of silence, asked and no answer, until it counts as hanging
+  double patienceAtStart = 600;  // the same while tasks read their share of the model
 };
 
 // The render cannot go on: a program is missing, too many deaths, hosts that do not fit together.
@@ -55,11 +55,11 @@ struct TaskSummary {
 
 struct HostSummary {
   std::vector<TaskSummary> tasks;
-  std::uint64_t objects = 0;       // of the world
-  int successions = 0;             // tasks that died and were replaced
+  std::uint64_t objects = 0;  // of the world
+  int successions = 0;        // tasks that died and were replaced
   std::uint32_t epochs = 0;
   std::uint64_t peakInFlight = 0;
-  std::uint64_t reissued = 0;      // samples issued again
+  std::uint64_t reissued = 0;                                    // samples issued again
   double surveySeconds = 0, startSeconds = 0, traceSeconds = 0;  // start: shipping and building
   Traffic traffic;
 };
@@ -100,13 +100,13 @@ class HostTask {
     Placement placement;
     TaskId task = kNobody;  // kNobody: dead, or not started yet
     bool hasItems = false;
-    int batchesOut = 0;     // shipped and not answered
+    int batchesOut = 0;  // shipped and not answered
     bool ready = false;
-    double heard = 0;       // when it last said anything
-    bool asked = false;     // a Ping is out
+    double heard = 0;    // when it last said anything
+    bool asked = false;  // a Ping is out
     TaskSummary summary;
     bool reported = false;
-    double busy = 0;        // share of its time, as it said last
+    double busy = 0;  // share of its time, as it said last
   };
 
   void surveyAgain();
@@ -151,7 +151,7 @@ class HostTask {
   std::deque<SampleId> again_;                            // were on their way when something died
   std::deque<TaskId> wanting_;                            // pyramid tasks that asked for work
   std::vector<std::uint32_t> cellBytes_;
-  double weighed_ = 0;                                    // when the weights of shade tasks were sent last
+  double weighed_ = 0;  // when the weights of shade tasks were sent last
   std::uint64_t serial_ = 0;
   HostSummary summary_;
 };

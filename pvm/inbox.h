@@ -23,7 +23,8 @@ bool deliver(Task& task, TaskId from, Epoch epoch, Reader& reader, Traffic& traf
   if (!reader.ok()) return false;
   ++traffic.messagesIn;
   if constexpr (kListed<M, typename Task::Accepted>) {
-    static_assert(requires { task.on(from, std::move(message)); }, "an accepted message has no handler");
+    static_assert(
+        requires { task.on(from, std::move(message)); }, "an accepted message has no handler");
     // Epochs are counted from 1: before the first Configure a task has nothing that it could work with.
     if (!M::isFact && (epoch != task.epoch() || epoch == Epoch{})) {
       ++traffic.stale;

@@ -27,10 +27,14 @@ enum class Role : std::uint8_t { host, voxelTrace, pyramidTrace, shade };
 // The names of the programs, and so of the roles: rayshade-host, rayshade-voxel-trace, ...
 constexpr const char* programName(Role role) {
   switch (role) {
-    case Role::host: return "rayshade-host";
-    case Role::voxelTrace: return "rayshade-voxel-trace";
-    case Role::pyramidTrace: return "rayshade-pyramid-trace";
-    case Role::shade: return "rayshade-shade";
+    case Role::host:
+      return "rayshade-host";
+    case Role::voxelTrace:
+      return "rayshade-voxel-trace";
+    case Role::pyramidTrace:
+      return "rayshade-pyramid-trace";
+    case Role::shade:
+      return "rayshade-shade";
   }
   return "";
 }
@@ -48,7 +52,7 @@ class Link {
   virtual ~Link() = default;
 
   virtual TaskId self() const = 0;
-  virtual TaskId parent() const = 0;                        // who spawned this task; kNobody for the first one
+  virtual TaskId parent() const = 0;  // who spawned this task; kNobody for the first one
   virtual void connect(std::span<const TaskId> peers) = 0;  // will often send to these: open fast routes
   virtual void send(TaskId to, std::span<const std::byte> packet) = 0;
   virtual std::optional<LinkEvent> poll() = 0;                // what is there now, without waiting
@@ -73,7 +77,7 @@ class Machine : public Link {
  public:
   virtual std::vector<HostInfo> hosts() = 0;  // the machines that are there now, the own one first
   virtual Spawned spawn(Role role, const std::string& host) = 0;
-  virtual void kill(TaskId task) = 0;         // a task that hangs
+  virtual void kill(TaskId task) = 0;  // a task that hangs
 };
 
 }  // namespace rayshade

@@ -48,6 +48,7 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "%.*s: %s\n", static_cast<int>(name.size()), name.data(), error.what());
     return 1;
   }
-  std::fprintf(stderr, "start this program as rayshade-host; it was called %.*s\n", static_cast<int>(name.size()), name.data());
+  std::fprintf(stderr, "start this program as rayshade-host; it was called %.*s\n",
+               static_cast<int>(name.size()), name.data());
   return 2;
 }

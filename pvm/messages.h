@@ -37,7 +37,7 @@ struct ReplyTo {
 // Who is who in an epoch.  With K clusters the model is there K times, distributed within each; rays never leave their
 // cluster, only colours do (Reinhard & Jansen, section 6).
 struct Directory {
-  std::vector<TaskId> voxelTasks;     // one cluster after the other, all of the same size
+  std::vector<TaskId> voxelTasks;  // one cluster after the other, all of the same size
   std::uint32_t clusters = 1;
   std::vector<std::uint32_t> voxels;  // by voxel: which task of a cluster has it
   std::vector<TaskId> pyramidTasks;   // task i belongs to cluster i modulo `clusters`
@@ -119,8 +119,9 @@ struct Ready {
   Epoch epoch{};
   std::uint64_t arithmetic = 0;  // fingerprint: equal on hosts that compute the same bits
   std::uint64_t objects = 0;     // that the task holds
-  std::uint64_t owned = 0;       // of those, the ones whose lowest corner lies in its voxels: they add up to the scene
-  std::uint64_t leftOut = 0;     // items that did not fit together
+  std::uint64_t owned =
+      0;  // of those, the ones whose lowest corner lies in its voxels: they add up to the scene
+  std::uint64_t leftOut = 0;  // items that did not fit together
 };
 
 // How busy a task is, a few times a second, when shading is placed dynamically; and what follows from it.
@@ -144,11 +145,11 @@ struct Report {
   TraceCounts counts;
   std::uint64_t combined = 0;  // intersections shaded
   std::uint64_t messagesIn = 0, messagesOut = 0, packetsIn = 0, packetsOut = 0, bytesIn = 0, bytesOut = 0;
-  std::uint64_t refused = 0;      // malformed or unexpected
-  std::uint64_t stale = 0;        // work of another epoch
-  std::uint64_t peakQueue = 0;    // rays or records waiting
-  std::uint64_t modelBytes = 0;   // its share of the scene, with accelerators
-  std::uint64_t peakMemory = 0;   // of the process, bytes
+  std::uint64_t refused = 0;     // malformed or unexpected
+  std::uint64_t stale = 0;       // work of another epoch
+  std::uint64_t peakQueue = 0;   // rays or records waiting
+  std::uint64_t modelBytes = 0;  // its share of the scene, with accelerators
+  std::uint64_t peakMemory = 0;  // of the process, bytes
   double busySeconds = 0, idleSeconds = 0, cpuSeconds = 0;
   CacheCounts cache;
   CacheCounts shadowCache;          // of those, what shadow rays asked for (look-ups only)
@@ -188,7 +189,8 @@ struct Expect {
   static constexpr bool isFact = false;
   RecordId record = 0;
   Intersection hit;
-  InlineVector<Color, 8> known;   // of the light points whose state is `asked` and `pending` does not name, in order
+  InlineVector<Color, 8>
+      known;  // of the light points whose state is `asked` and `pending` does not name, in order
   InlineVector<Slot, 8> pending;  // light points whose colour will come in an Answer, ascending
   ReplyTo to;
 };
@@ -231,8 +233,9 @@ struct Answer {
 };
 
 // Append only: the position is the tag.
-using AllMessages = TypeList<Forget, Items, ItemsTaken, Configure, Ready, Finish, Report, Ping, Pong, RayTask,
-                             ShadowTask, Expect, Answer, PyramidWanted, PyramidWork, CellWanted, CellItems, Load, Weights>;
+using AllMessages =
+    TypeList<Forget, Items, ItemsTaken, Configure, Ready, Finish, Report, Ping, Pong, RayTask, ShadowTask,
+             Expect, Answer, PyramidWanted, PyramidWork, CellWanted, CellItems, Load, Weights>;
 
 inline constexpr std::uint8_t kWireVersion = 1;
 
@@ -274,7 +277,8 @@ void serialize(Archive& archive, Exposure& e) {
 }
 template <class Archive>
 void serialize(Archive& archive, Configure& m) {
-  archive(m.epoch, m.setting, m.tree, m.directory, m.number, m.exposure, m.policy, m.exhibition, m.cellBytes, m.loadEvery);
+  archive(m.epoch, m.setting, m.tree, m.directory, m.number, m.exposure, m.policy, m.exhibition, m.cellBytes,
+          m.loadEvery);
 }
 template <class Archive>
 void serialize(Archive& archive, Ready& m) {
@@ -285,8 +289,8 @@ void serialize(Archive&, Finish&) {}
 template <class Archive>
 void serialize(Archive& archive, Report& m) {
   archive(m.counts, m.combined, m.messagesIn, m.messagesOut, m.packetsIn, m.packetsOut, m.bytesIn, m.bytesOut,
-          m.refused, m.stale, m.peakQueue, m.modelBytes, m.peakMemory, m.busySeconds, m.idleSeconds, m.cpuSeconds, m.cache,
-          m.shadowCache, m.pyramids, m.pyramidRays, m.forwardedRays, m.cellsServed);
+          m.refused, m.stale, m.peakQueue, m.modelBytes, m.peakMemory, m.busySeconds, m.idleSeconds,
+          m.cpuSeconds, m.cache, m.shadowCache, m.pyramids, m.pyramidRays, m.forwardedRays, m.cellsServed);
 }
 template <class Archive>
 void serialize(Archive&, Ping&) {}

@@ -13,7 +13,8 @@ Ground ObjectCache::find(CellId cell) {
   return {&c.model, &c.region};
 }
 
-void ObjectCache::insert(CellId cell, std::vector<Item>&& items, const Exposure& exposure, std::size_t wireBytes) {
+void ObjectCache::insert(CellId cell, std::vector<Item>&& items, const Exposure& exposure,
+                         std::size_t wireBytes) {
   const auto key = static_cast<std::uint32_t>(cell);
   if (cells_.contains(key)) return;
   auto c = std::make_unique<Cell>();
@@ -47,10 +48,12 @@ void ObjectCache::makeRoom() {
 }
 
 void ObjectCache::pin(CellId cell) {
-  if (const auto found = cells_.find(static_cast<std::uint32_t>(cell)); found != cells_.end()) ++found->second->pins;
+  if (const auto found = cells_.find(static_cast<std::uint32_t>(cell)); found != cells_.end())
+    ++found->second->pins;
 }
 void ObjectCache::unpin(CellId cell) {
-  if (const auto found = cells_.find(static_cast<std::uint32_t>(cell)); found != cells_.end()) --found->second->pins;
+  if (const auto found = cells_.find(static_cast<std::uint32_t>(cell)); found != cells_.end())
+    --found->second->pins;
   makeRoom();
 }
 

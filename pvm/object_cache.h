@@ -14,9 +14,9 @@
 namespace rayshade {
 
 struct CacheCounts {
-  std::uint64_t asked = 0;      // look-ups
-  std::uint64_t hits = 0;       // of those, found
-  std::uint64_t fetched = 0;    // cells that came in
+  std::uint64_t asked = 0;    // look-ups
+  std::uint64_t hits = 0;     // of those, found
+  std::uint64_t fetched = 0;  // cells that came in
   std::uint64_t fetchedBytes = 0;
   std::uint64_t evicted = 0;
   std::uint64_t peakBytes = 0;  // held at a time

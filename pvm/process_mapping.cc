@@ -30,7 +30,8 @@ std::vector<Placement> mapProcesses(const std::vector<HostInfo>& hosts, const Wi
   const std::uint32_t shades = wishes.shades > 0 ? wishes.shades : std::max(1u, voxels / 4);
   std::vector<Placement> placements;
   for (std::uint32_t i = 0; i < voxels; ++i) {
-    placements.push_back({Role::voxelTrace, i, hosts[leastLoaded(kVoxelWork)].name, "voxels spread over all hosts by speed"});
+    placements.push_back(
+        {Role::voxelTrace, i, hosts[leastLoaded(kVoxelWork)].name, "voxels spread over all hosts by speed"});
   }
   for (std::uint32_t i = 0; i < wishes.pyramids; ++i) {
     // Close to the host: its own machine, unless another one is expected to be less than half as busy.
@@ -39,11 +40,13 @@ std::vector<Placement> mapProcesses(const std::vector<HostInfo>& hosts, const Wi
     const bool stay = load(0, kPyramidWork) <= 2 * load(other, kPyramidWork);
     const std::size_t at = stay ? 0 : other;
     work[at] += kPyramidWork;
-    placements.push_back({Role::pyramidTrace, i, hosts[at].name,
-                          stay ? "pyramids close to the host task" : "the host task's machine has enough to do"});
+    placements.push_back(
+        {Role::pyramidTrace, i, hosts[at].name,
+         stay ? "pyramids close to the host task" : "the host task's machine has enough to do"});
   }
   for (std::uint32_t i = 0; i < shades; ++i) {
-    placements.push_back({Role::shade, i, hosts[leastLoaded(kShadeWork)].name, "least tracing work is expected there"});
+    placements.push_back(
+        {Role::shade, i, hosts[leastLoaded(kShadeWork)].name, "least tracing work is expected there"});
   }
   return placements;
 }

@@ -15,7 +15,7 @@
 namespace rayshade {
 
 struct Wishes {
-  std::uint32_t voxels = 0;    // voxel-trace tasks of each cluster; 0: two per host, shared among the clusters
+  std::uint32_t voxels = 0;  // voxel-trace tasks of each cluster; 0: two per host, shared among the clusters
   std::uint32_t pyramids = 0;  // pyramid-trace tasks
   std::uint32_t shades = 0;    // shade tasks; 0: one per four voxel-trace tasks, at least one
   std::uint32_t clusters = 1;  // copies of the model

@@ -91,8 +91,9 @@ std::vector<CellId> PyramidTask::cellsOf(const std::vector<Ray>& rays,
     // A little wider: a pyramid of one ray is none.
     constexpr double kMargin = 1e-3;  // pixels
     auto corner = [&](double u, double v) { return view.first + u * view.right + v * view.down; };
-    return clipList(tree, pyramidOf(view.eye, {corner(u0 - kMargin, v0 - kMargin), corner(u1 + kMargin, v0 - kMargin),
-                                               corner(u1 + kMargin, v1 + kMargin), corner(u0 - kMargin, v1 + kMargin)}));
+    return clipList(
+        tree, pyramidOf(view.eye, {corner(u0 - kMargin, v0 - kMargin), corner(u1 + kMargin, v0 - kMargin),
+                                   corner(u1 + kMargin, v1 + kMargin), corner(u0 - kMargin, v1 + kMargin)}));
   }
   std::map<std::uint32_t, double> nearest;  // by cell: where the first ray enters it
   for (const Ray& ray : rays) {
@@ -138,9 +139,9 @@ std::size_t PyramidTask::beforeHorizon(const std::vector<CellId>& cells, std::si
 void PyramidTask::on(TaskId, PyramidWork message) {
   const PictureSpec& picture = exhibition_.picture;
   const std::int32_t cellsOfPixel = picture.samplesPerSide * picture.samplesPerSide;
-  if (message.samples.empty() || std::any_of(message.samples.begin(), message.samples.end(), [&](const SampleId& s) {
-        return s.cell < 0 || s.cell >= cellsOfPixel;
-      })) {
+  if (message.samples.empty() ||
+      std::any_of(message.samples.begin(), message.samples.end(),
+                  [&](const SampleId& s) { return s.cell < 0 || s.cell >= cellsOfPixel; })) {
     ++desk_.outbox.traffic.refused;
     return;
   }
@@ -227,9 +228,12 @@ void PyramidTask::trace(Tile& tile) {
   const LocalProgress progress = followLocally(worker_.at().tree, *this, ray, unit, worker_.counts());
   switch (progress.state) {
     case LocalProgress::State::hit:
-      worker_.shade(ray, to, progress.hit, *progress.model, [this](RayTask&& child) { forward(std::move(child)); });
+      worker_.shade(ray, to, progress.hit, *progress.model,
+                    [this](RayTask&& child) { forward(std::move(child)); });
       break;
-    case LocalProgress::State::left: worker_.answer(to, missed(ray, worker_.at().setting)); break;
+    case LocalProgress::State::left:
+      worker_.answer(to, missed(ray, worker_.at().setting));
+      break;
     case LocalProgress::State::missing:  // behind the horizon: demand driven becomes data driven
       ++forwarded_;
       desk_.outbox.post(worker_.at().ownerOf(progress.voxel), RayTask{std::move(ray), progress.step, to});
@@ -258,13 +262,16 @@ void PyramidTask::forward(RayTask task) {
 
 void PyramidTask::trace(WaitingRay&& waiting) {
   RayTask& task = waiting.task;
-  const LocalProgress progress = followLocally(worker_.at().tree, *this, task.ray, waiting.unit, worker_.counts());
+  const LocalProgress progress =
+      followLocally(worker_.at().tree, *this, task.ray, waiting.unit, worker_.counts());
   switch (progress.state) {
     case LocalProgress::State::hit:
       worker_.shade(task.ray, task.to, progress.hit, *progress.model,
                     [this](RayTask&& child) { forward(std::move(child)); });
       break;
-    case LocalProgress::State::left: worker_.answer(task.to, missed(task.ray, worker_.at().setting)); break;
+    case LocalProgress::State::left:
+      worker_.answer(task.to, missed(task.ray, worker_.at().setting));
+      break;
     case LocalProgress::State::missing:
       worker_.want(progress.cell);
       parked_[static_cast<std::uint32_t>(progress.cell)].push_back(std::move(waiting));

@@ -16,7 +16,8 @@ namespace rayshade {
 class PyramidTask : public GroundSource {
  public:
   using Accepted = TypeList<Configure, Finish, Ping, Weights, PyramidWork, CellItems>;
-  static constexpr int kAhead = 4;  // pyramids asked for at a time: some are traced while others wait for cells
+  static constexpr int kAhead =
+      4;  // pyramids asked for at a time: some are traced while others wait for cells
 
   explicit PyramidTask(Link& link) : desk_(link), worker_(desk_, nullptr) {}
 
@@ -42,16 +43,17 @@ class PyramidTask : public GroundSource {
   struct Tile {
     RecordId firstRecord = 0;
     std::vector<Ray> rays;
-    std::size_t next = 0;        // ray to be traced
-    std::vector<CellId> cells;   // up to the horizon, without empty ones
-    std::size_t missing = 0;     // of those, not here yet
+    std::size_t next = 0;       // ray to be traced
+    std::vector<CellId> cells;  // up to the horizon, without empty ones
+    std::size_t missing = 0;    // of those, not here yet
   };
-  struct WaitingRay {            // a secondary ray that is traced here
+  struct WaitingRay {  // a secondary ray that is traced here
     RayTask task;
     std::uint32_t unit = 0;
   };
 
-  std::vector<CellId> cellsOf(const std::vector<Ray>& rays, const std::vector<SamplePosition>& positions) const;
+  std::vector<CellId> cellsOf(const std::vector<Ray>& rays,
+                              const std::vector<SamplePosition>& positions) const;
   std::size_t beforeHorizon(const std::vector<CellId>& cells, std::size_t rays) const;
   void trace(Tile& tile);
   void trace(WaitingRay&& waiting);
@@ -64,11 +66,11 @@ class PyramidTask : public GroundSource {
   Exhibition exhibition_;
   Model noModel_;
   Region nothing_;
-  std::list<Tile> tiles_;                                             // all of them
-  std::deque<std::list<Tile>::iterator> ready_;                       // with all cells
+  std::list<Tile> tiles_;                                                                   // all of them
+  std::deque<std::list<Tile>::iterator> ready_;                                             // with all cells
   std::unordered_map<std::uint32_t, std::vector<std::list<Tile>::iterator>> waitingTiles_;  // by cell
-  std::vector<WaitingRay> secondaries_;                               // to be traced, last in first out
-  std::unordered_map<std::uint32_t, std::vector<WaitingRay>> parked_; // by cell
+  std::vector<WaitingRay> secondaries_;                                // to be traced, last in first out
+  std::unordered_map<std::uint32_t, std::vector<WaitingRay>> parked_;  // by cell
   std::uint64_t pyramids_ = 0, pyramidRays_ = 0, forwarded_ = 0;
 };
 

@@ -65,14 +65,16 @@ void RayWorker::traceBundle(Bundle&& bundle, const LightSource& light) {
   ShadowRay probe = first.shadow;
   std::uint32_t unit = first.unit;
   const LocalProgress missing = followLocally(at_.tree, *this, probe, unit, at_.setting, counts_);
-  const bool fetch = at_.policy.shadows == ShadowPolicy::local ||
-                     (at_.policy.shadows == ShadowPolicy::automatic && fetchingPays(missing.cell, bundle.rays.size()));
+  const bool fetch =
+      at_.policy.shadows == ShadowPolicy::local ||
+      (at_.policy.shadows == ShadowPolicy::automatic && fetchingPays(missing.cell, bundle.rays.size()));
   if (fetch) {
     park(std::move(bundle), missing.cell, &light);
     return;
   }
   for (Pending& pending : bundle.rays) {
-    const LocalProgress at = followLocally(at_.tree, *this, pending.shadow, pending.unit, at_.setting, counts_);
+    const LocalProgress at =
+        followLocally(at_.tree, *this, pending.shadow, pending.unit, at_.setting, counts_);
     forward(pending, bundle, at);
   }
 }
@@ -114,8 +116,10 @@ void RayWorker::resume(Bundle&& bundle) {
     const LocalProgress progress =
         followLocally(at_.tree, *this, pending.shadow, pending.unit, at_.setting, counts_);
     if (progress.state == LocalProgress::State::missing) {
-      Bundle& rest = missing.try_emplace(static_cast<std::uint32_t>(progress.cell),
-                                         Bundle{{}, bundle.shader, bundle.record}).first->second;
+      Bundle& rest = missing
+                         .try_emplace(static_cast<std::uint32_t>(progress.cell),
+                                      Bundle{{}, bundle.shader, bundle.record})
+                         .first->second;
       rest.rays.push_back(std::move(pending));
     } else {
       answer({bundle.shader, bundle.record, pending.slot},

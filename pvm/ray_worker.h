@@ -62,7 +62,9 @@ class RayWorker : public GroundSource {
   template <class Queue>
   void shade(const Ray& ray, const ReplyTo& to, const Hit& hit, const Model& model, Queue queue);
 
-  void answer(const ReplyTo& to, Color color) { desk_.outbox.post(to.task, Answer{to.record, to.slot, color}); }
+  void answer(const ReplyTo& to, Color color) {
+    desk_.outbox.post(to.task, Answer{to.record, to.slot, color});
+  }
 
   // Asks for a cell unless it is here or asked for already.
   void want(CellId cell);
@@ -104,13 +106,13 @@ class RayWorker : public GroundSource {
   Region nothing_;  // of an empty cell
 
   std::uint32_t recordBase_ = 0;
-  std::uint64_t serial_ = 0;  // of the next intersection found here
+  std::uint64_t serial_ = 0;                                       // of the next intersection found here
   std::unordered_map<std::uint32_t, std::vector<Bundle>> parked_;  // by the cell they wait for
   std::size_t parkedCount_ = 0;
   std::uint64_t combined_ = 0;
-  std::unordered_set<std::uint32_t> asked_;  // cells on their way
-  std::deque<CellId> toAsk_;                 // more than may be on their way
-  std::unordered_set<std::uint32_t> queued_; // in toAsk_
+  std::unordered_set<std::uint32_t> asked_;   // cells on their way
+  std::deque<CellId> toAsk_;                  // more than may be on their way
+  std::unordered_set<std::uint32_t> queued_;  // in toAsk_
 };
 
 template <class Queue>

@@ -40,8 +40,8 @@ class ShadeLedger {
   struct Record {
     std::optional<Expect> expected;
     Gathered gathered;
-    std::vector<Slot> missing;    // once expected
-    std::vector<Answer> early;    // until then
+    std::vector<Slot> missing;  // once expected
+    std::vector<Answer> early;  // until then
   };
   bool fill(Record& record, const Answer& answer);
   Verdict conclude(RecordId id, Record& record, Settled& out);

@@ -12,7 +12,11 @@ std::size_t sizeOf(const Item& item) { return encode(item).size(); }
 
 Shipping::Shipping(ObjectStream& stream, const BinTree& tree, const Directory& directory,
                    std::set<std::uint32_t> targets, Send send)
-    : stream_(stream), tree_(tree), directory_(directory), targets_(std::move(targets)), send_(std::move(send)) {}
+    : stream_(stream),
+      tree_(tree),
+      directory_(directory),
+      targets_(std::move(targets)),
+      send_(std::move(send)) {}
 
 void Shipping::add(std::uint32_t task, Item item) {
   Parcel& parcel = parcels_[task];
@@ -56,7 +60,8 @@ void Shipping::addNeeds(std::uint32_t task, const SceneObject& object) {
   });
 }
 
-void Shipping::object(const SceneObject& object, const Bounds& bounds, std::span<const FrameItem* const> frames) {
+void Shipping::object(const SceneObject& object, const Bounds& bounds,
+                      std::span<const FrameItem* const> frames) {
   touched_.clear();
   voxelsTouching(tree_, bounds, touched_);
   std::vector<std::uint32_t> tasks;
@@ -64,7 +69,8 @@ void Shipping::object(const SceneObject& object, const Bounds& bounds, std::span
     for (std::uint32_t cluster = 0; cluster < directory_.clusters; ++cluster) {
       const std::uint32_t task =
           cluster * directory_.tasksPerCluster() + directory_.voxels[static_cast<std::size_t>(voxel)];
-      if (targets_.contains(task) && std::find(tasks.begin(), tasks.end(), task) == tasks.end()) tasks.push_back(task);
+      if (targets_.contains(task) && std::find(tasks.begin(), tasks.end(), task) == tasks.end())
+        tasks.push_back(task);
     }
   }
   for (std::uint32_t task : tasks) {

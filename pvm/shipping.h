@@ -25,8 +25,8 @@ class Shipping {
   using Send = std::function<void(std::uint32_t task, Items&& batch)>;
 
   // `targets`: which of the directory's voxel tasks are shipped to.
-  Shipping(ObjectStream& stream, const BinTree& tree, const Directory& directory, std::set<std::uint32_t> targets,
-           Send send);
+  Shipping(ObjectStream& stream, const BinTree& tree, const Directory& directory,
+           std::set<std::uint32_t> targets, Send send);
 
   // What an object takes on the wire, without what it refers to.
   static std::size_t bytesOf(const SceneObject& object) { return encode(object).size(); }

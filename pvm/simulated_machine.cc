@@ -56,7 +56,8 @@ class SimulatedMachine::Inside final : public Link {
 };
 
 struct SimulatedMachine::Running {
-  Running(SimulatedMachine& machine, TaskId self, const std::string& hostName) : link(machine, self), host(hostName) {}
+  Running(SimulatedMachine& machine, TaskId self, const std::string& hostName)
+      : link(machine, self), host(hostName) {}
   Inside link;
   std::string host;
   std::unique_ptr<Slave> task;
@@ -64,7 +65,8 @@ struct SimulatedMachine::Running {
   bool mayWork = false;
 };
 
-SimulatedMachine::SimulatedMachine(const Options& options) : options_(options), state_(mixBits(options.seed)) {}
+SimulatedMachine::SimulatedMachine(const Options& options)
+    : options_(options), state_(mixBits(options.seed)) {}
 SimulatedMachine::~SimulatedMachine() = default;
 
 std::uint64_t SimulatedMachine::random(std::uint64_t below) {
@@ -76,10 +78,17 @@ Spawned SimulatedMachine::spawn(Role role, const std::string& host) {
   const TaskId id{nextTask_++};
   auto running = std::make_unique<Running>(*this, id, host);
   switch (role) {
-    case Role::voxelTrace: running->task = std::make_unique<SlaveOf<VoxelTask>>(running->link); break;
-    case Role::pyramidTrace: running->task = std::make_unique<SlaveOf<PyramidTask>>(running->link); break;
-    case Role::shade: running->task = std::make_unique<SlaveOf<ShadeTask>>(running->link); break;
-    default: return {kNobody, std::string("no such program: ") + programName(role)};
+    case Role::voxelTrace:
+      running->task = std::make_unique<SlaveOf<VoxelTask>>(running->link);
+      break;
+    case Role::pyramidTrace:
+      running->task = std::make_unique<SlaveOf<PyramidTask>>(running->link);
+      break;
+    case Role::shade:
+      running->task = std::make_unique<SlaveOf<ShadeTask>>(running->link);
+      break;
+    default:
+      return {kNobody, std::string("no such program: ") + programName(role)};
   }
   tasks_[id] = std::move(running);
   return {id, ""};
@@ -112,8 +121,7 @@ void SimulatedMachine::bury(TaskId task, bool losesWords) {
     it = queue.empty() ? channels_.erase(it) : std::next(it);
   }
   // The notice comes after the last words that still arrive.
-  for (TaskId watcher : watchers_[task])
-    enqueue({task, watcher}, {LinkEvent::Kind::taskExit, task, "", {}});
+  for (TaskId watcher : watchers_[task]) enqueue({task, watcher}, {LinkEvent::Kind::taskExit, task, "", {}});
   watchers_.erase(task);
 }
 

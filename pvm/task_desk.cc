@@ -35,7 +35,9 @@ Report TaskDesk::report() const {
   report.busySeconds = link.now() - born_ - idleSeconds;
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
-  auto seconds = [](const timeval& t) { return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec); };
+  auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
   report.cpuSeconds = seconds(usage.ru_utime) + seconds(usage.ru_stime);
   report.peakMemory = static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
   return report;

@@ -39,17 +39,16 @@ void VoxelTask::on(TaskId from, Configure message) {
   shadows_.clear();
   number_ = message.number % directory.tasksPerCluster();
   const std::uint32_t cluster = message.number / directory.tasksPerCluster();
-  worker_.begin({std::move(message.setting), std::move(message.tree), std::move(message.directory),
-                 cluster, message.exposure, message.policy,
-                 std::move(message.cellBytes)},
+  worker_.begin({std::move(message.setting), std::move(message.tree), std::move(message.directory), cluster,
+                 message.exposure, message.policy, std::move(message.cellBytes)},
                 message.number);
   desk_.link.connect(worker_.at().directory.voxelTasks);
   desk_.link.connect(worker_.at().directory.shadeTasks);
   desk_.link.connect(worker_.at().directory.pyramidTasks);
   if (itemsAreNew_) buildRegions();
   itemsAreNew_ = false;
-  desk_.outbox.post(from, Ready{message.epoch, arithmeticFingerprint(), model_->store().objectsOf(kWorld).size(),
-                                owned_, model_->leftOut()});
+  desk_.outbox.post(from, Ready{message.epoch, arithmeticFingerprint(),
+                                model_->store().objectsOf(kWorld).size(), owned_, model_->leftOut()});
 }
 
 void VoxelTask::on(TaskId, Weights message) {
@@ -67,13 +66,15 @@ void VoxelTask::buildRegions() {
     touched.clear();
     voxelsTouching(at.tree, model_->boundsOf(object), touched);
     // Every object belongs to the first voxel that it touches; there it counts.
-    if (!touched.empty() && at.directory.voxels[static_cast<std::size_t>(touched.front())] == number_) ++owned_;
+    if (!touched.empty() && at.directory.voxels[static_cast<std::size_t>(touched.front())] == number_)
+      ++owned_;
     for (VoxelId voxel : touched) members[static_cast<std::size_t>(voxel)].push_back(object);
   }
   regions_.clear();
   for (std::size_t voxel = 0; voxel < members.size(); ++voxel) {
     const bool mine = at.directory.voxels[voxel] == number_;
-    regions_.push_back(mine ? std::make_unique<Region>(model_->regionOf(std::move(members[voxel]))) : nullptr);
+    regions_.push_back(mine ? std::make_unique<Region>(model_->regionOf(std::move(members[voxel])))
+                            : nullptr);
   }
 }
 
@@ -98,7 +99,8 @@ void VoxelTask::on(TaskId from, CellWanted message) {
       cells.clear();
       cellsTouching(tree, model_->boundsOf(object), cells);
       for (CellId cell : cells)
-        if (voxelOfCell(tree, cell) == voxel) cellObjects_[static_cast<std::uint32_t>(cell)].push_back(object);
+        if (voxelOfCell(tree, cell) == voxel)
+          cellObjects_[static_cast<std::uint32_t>(cell)].push_back(object);
     }
     cellObjects_[key];
   }
@@ -180,9 +182,12 @@ void VoxelTask::trace(RayTask& task) {
   const Progress progress = followRay(at.tree, *model_, *this, task.ray, task.step, worker_.counts());
   switch (progress.state) {
     case Progress::State::hit:
-      worker_.shade(task.ray, task.to, progress.hit, *model_, [this](RayTask&& child) { queue(std::move(child)); });
+      worker_.shade(task.ray, task.to, progress.hit, *model_,
+                    [this](RayTask&& child) { queue(std::move(child)); });
       break;
-    case Progress::State::left: worker_.answer(task.to, missed(task.ray, at.setting)); break;
+    case Progress::State::left:
+      worker_.answer(task.to, missed(task.ray, at.setting));
+      break;
     case Progress::State::elsewhere:
       task.step = progress.step;
       desk_.outbox.post(at.ownerOf(progress.voxel), task);
@@ -195,8 +200,12 @@ void VoxelTask::trace(ShadowTask& task) {
   const Progress progress =
       followShadow(at.tree, *model_, *this, task.shadow, task.step, at.setting, worker_.counts());
   switch (progress.state) {
-    case Progress::State::hit: worker_.answer(task.to, kBlack); break;
-    case Progress::State::left: worker_.answer(task.to, task.shadow.through); break;
+    case Progress::State::hit:
+      worker_.answer(task.to, kBlack);
+      break;
+    case Progress::State::left:
+      worker_.answer(task.to, task.shadow.through);
+      break;
     case Progress::State::elsewhere:
       task.step = progress.step;
       desk_.outbox.post(at.ownerOf(progress.voxel), task);

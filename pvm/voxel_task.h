@@ -15,7 +15,8 @@ namespace rayshade {
 
 class VoxelTask : public VoxelSource, public OwnVoxels {
  public:
-  using Accepted = TypeList<Forget, Items, Configure, Finish, Ping, Weights, RayTask, ShadowTask, CellWanted, CellItems>;
+  using Accepted =
+      TypeList<Forget, Items, Configure, Finish, Ping, Weights, RayTask, ShadowTask, CellWanted, CellItems>;
 
   explicit VoxelTask(Link& link) : desk_(link), worker_(desk_, this) {}
 

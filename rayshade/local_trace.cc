@@ -6,8 +6,8 @@ namespace {
 
 // Walks until `visit(ground, tExit)` is true, the scene or `limit` is left, or something is not at hand.
 template <class Visit>
-LocalProgress walkLocally(const BinTree& tree, GroundSource& source, Vec3 origin, Vec3 direction, double limit,
-                          std::uint32_t& unit, Visit visit) {
+LocalProgress walkLocally(const BinTree& tree, GroundSource& source, Vec3 origin, Vec3 direction,
+                          double limit, std::uint32_t& unit, Visit visit) {
   std::uint32_t passed = 0;
   VoxelWalk voxels(tree, origin, direction);
   CellWalk cells(tree, origin, direction);
@@ -22,16 +22,19 @@ LocalProgress walkLocally(const BinTree& tree, GroundSource& source, Vec3 origin
       continue;
     }
     while (cellIsSet && voxelOfCell(tree, cell.where) != step.where) cellIsSet = cells.next(cell);
-    for (; cellIsSet && voxelOfCell(tree, cell.where) == step.where && cell.tEnter < limit; cellIsSet = cells.next(cell)) {
+    for (; cellIsSet && voxelOfCell(tree, cell.where) == step.where && cell.tEnter < limit;
+         cellIsSet = cells.next(cell)) {
       if (passed < unit) {
         ++passed;
         continue;
       }
       const Ground fetched = source.cell(cell.where);
-      if (fetched.region == nullptr) return {LocalProgress::State::missing, {}, nullptr, cell.where, step.where, i};
+      if (fetched.region == nullptr)
+        return {LocalProgress::State::missing, {}, nullptr, cell.where, step.where, i};
       ++passed;
       ++unit;
-      if (visit(fetched, cell.tExit)) return {LocalProgress::State::hit, {}, fetched.model, cell.where, step.where, i};
+      if (visit(fetched, cell.tExit))
+        return {LocalProgress::State::hit, {}, fetched.model, cell.where, step.where, i};
     }
   }
   return {};
@@ -42,12 +45,12 @@ LocalProgress walkLocally(const BinTree& tree, GroundSource& source, Vec3 origin
 LocalProgress followLocally(const BinTree& tree, GroundSource& source, const Ray& ray, std::uint32_t& unit,
                             TraceCounts& counts) {
   Hit hit;
-  LocalProgress progress =
-      walkLocally(tree, source, ray.origin, ray.direction, kInfinity, unit, [&](const Ground& ground, double tExit) {
-        ++counts.visits;
-        hit = visit(*ground.model, *ground.region, ray, 0, tExit);
-        return hit.found();
-      });
+  LocalProgress progress = walkLocally(tree, source, ray.origin, ray.direction, kInfinity, unit,
+                                       [&](const Ground& ground, double tExit) {
+                                         ++counts.visits;
+                                         hit = visit(*ground.model, *ground.region, ray, 0, tExit);
+                                         return hit.found();
+                                       });
   progress.hit = hit;
   if (hit.found()) ++counts.hits;
   return progress;

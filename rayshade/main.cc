@@ -32,8 +32,10 @@ void writeReport(std::FILE* to, const Scene& scene, const FrameResult& result, c
   line("hits", c.hits);
   line("supersampled pixels", result.samples.supersampled);
   line("objects", scene.model.store().objectCount());
-  std::fprintf(to, "%-24s %12.2f M\n", "rays per second", 1e-6 * static_cast<double>(all) / std::max(times.trace, 1e-9));
-  std::fprintf(to, "%-24s %8.3f read, %.3f build, %.3f trace\n", "seconds", times.read, times.build, times.trace);
+  std::fprintf(to, "%-24s %12.2f M\n", "rays per second",
+               1e-6 * static_cast<double>(all) / std::max(times.trace, 1e-9));
+  std::fprintf(to, "%-24s %8.3f read, %.3f build, %.3f trace\n", "seconds", times.read, times.build,
+               times.trace);
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   std::fprintf(to, "%-24s %8.1f scene, %.1f process at most\n", "megabytes", megabytes(scene.bytes()),
@@ -53,19 +55,21 @@ int run(const Options& options) {
   Scene scene;
   SceneHead head = parseScene(options.parse, scene.model.store());
   applyOptions(options, head);
-  if (scene.model.store().objectCount() == 0) throw SceneError(sceneName(options) + ": error: there is nothing to be rendered");
+  if (scene.model.store().objectCount() == 0)
+    throw SceneError(sceneName(options) + ": error: there is nothing to be rendered");
   scene.setting = head.setting;
   const View view = *viewOf(head.camera, head.picture);
   const PixelArea area = *pixelArea(head.picture);
   const std::string outputFile = chooseOutput(options, head);
   times.read = lap();
   const bool quiet = options.quiet || head.report.quiet;
-  const bool report = options.verbose || !options.verboseFile.empty() || (head.report.wanted && head.report.verbose);
+  const bool report =
+      options.verbose || !options.verboseFile.empty() || (head.report.wanted && head.report.verbose);
   // As in rayshade: lines that stay, when they were asked for.
-  const std::int32_t everyRows = quiet                      ? 0
-                                 : options.reportEvery      ? *options.reportEvery
-                                 : head.report.wanted       ? head.report.everyRows
-                                                            : 0;
+  const std::int32_t everyRows = quiet                 ? 0
+                                 : options.reportEvery ? *options.reportEvery
+                                 : head.report.wanted  ? head.report.everyRows
+                                                       : 0;
   const std::int32_t first = head.picture.firstFrame;
   for (std::int32_t frame = first; frame < first + head.picture.frames; ++frame) {
     std::optional<PictureFormat> format = options.format;
@@ -87,7 +91,8 @@ int run(const Options& options) {
           if (everyRows > 0 && rows % everyRows == 0)
             std::fprintf(stderr, "finished line %d of %d (%" PRIu64 " pixels)\n", rows, area.height,
                          static_cast<std::uint64_t>(rows) * static_cast<std::uint64_t>(area.width));
-          progress.show(rows, area.height, static_cast<std::uint64_t>(rows) * static_cast<std::uint64_t>(area.width), "pixels");
+          progress.show(rows, area.height,
+                        static_cast<std::uint64_t>(rows) * static_cast<std::uint64_t>(area.width), "pixels");
         });
     writer.finish();
     times.trace = lap();

@@ -9,16 +9,32 @@ namespace rayshade {
 
 void declareOptions(CLI::App& app, Options& o) {
   app.set_help_flag("-h,--help", "show this and leave");
-  const std::string input = "The scene", picture = "The picture", quality = "Speed against quality", talk = "Messages";
+  const std::string input = "The scene", picture = "The picture", quality = "Speed against quality",
+                    talk = "Messages";
   app.add_option("scene", o.parse.fileName, "scene file in the Rayshade language; none or -: standard input");
-  app.add_flag_callback("-u", [&o] { o.parse.preprocess = !o.parse.preprocess; }, "do not run the C preprocessor")->group(input);
-  app.add_option("-P", o.parse.preprocessorArguments, "arguments for the preprocessor, e.g. -P '-DBIG'")->group(input);
+  app.add_flag_callback(
+         "-u", [&o] { o.parse.preprocess = !o.parse.preprocess; }, "do not run the C preprocessor")
+      ->group(input);
+  app.add_option("-P", o.parse.preprocessorArguments, "arguments for the preprocessor, e.g. -P '-DBIG'")
+      ->group(input);
   app.add_flag("-f", o.parse.flipTriangleNormals, "flip the normals of triangles and polygons")->group(input);
 
-  app.add_option("-O", o.outputFile, "output file: .png .ppm .pfm (linear floats), anything else the generic format; - is standard output")->group(picture);
-  app.add_option("-R", o.resolution, "width and height in pixels")->expected(2)->allow_extra_args(false)->group(picture);
-  app.add_option("-W", o.window, "render only the pixels x0 x1 y0 y1")->expected(4)->allow_extra_args(false)->group(picture);
-  app.add_option("-X", o.crop, "crop to left right bottom top, shares of the window")->expected(4)->allow_extra_args(false)->group(picture);
+  app.add_option("-O", o.outputFile,
+                 "output file: .png .ppm .pfm (linear floats), anything else the generic format; - is "
+                 "standard output")
+      ->group(picture);
+  app.add_option("-R", o.resolution, "width and height in pixels")
+      ->expected(2)
+      ->allow_extra_args(false)
+      ->group(picture);
+  app.add_option("-W", o.window, "render only the pixels x0 x1 y0 y1")
+      ->expected(4)
+      ->allow_extra_args(false)
+      ->group(picture);
+  app.add_option("-X", o.crop, "crop to left right bottom top, shares of the window")
+      ->expected(4)
+      ->allow_extra_args(false)
+      ->group(picture);
   app.add_option("-G", o.gamma, "gamma of the output (1: linear)")->group(picture);
   app.add_flag("--16", o.sixteenBit, "PNG with 16 bits a channel")->group(picture);
   app.add_flag("-l", o.leftEye, "render the left eye of a stereo pair")->group(picture);
@@ -28,21 +44,30 @@ void declareOptions(CLI::App& app, Options& o) {
   app.add_option("-N", o.frames, "number of frames")->group(picture);
 
   app.add_option("-S", o.samples, "samples along each side of a pixel, 1 to 8")->group(quality);
-  app.add_option("-T", o.contrast, "contrast r g b above which a pixel gets all of its samples")->expected(3)->allow_extra_args(false)->group(quality);
-  app.add_option("-C", o.cutoff, "weight r g b below which no ray is sent")->expected(3)->allow_extra_args(false)->group(quality);
+  app.add_option("-T", o.contrast, "contrast r g b above which a pixel gets all of its samples")
+      ->expected(3)
+      ->allow_extra_args(false)
+      ->group(quality);
+  app.add_option("-C", o.cutoff, "weight r g b below which no ray is sent")
+      ->expected(3)
+      ->allow_extra_args(false)
+      ->group(quality);
   app.add_option("-D", o.maxDepth, "largest number of reflections and refractions in a row")->group(quality);
   app.add_flag("-j", o.toggleJitter, "sample the corners of the cells instead of jittering")->group(quality);
   app.add_flag("-g", o.gaussian, "Gaussian pixel filter, unless the scene names one")->group(quality);
   app.add_flag("-n", o.noShadows, "no shadows")->group(quality);
   app.add_flag("-o", o.opaqueShadows, "transparent objects cast full shadows")->group(quality);
   app.add_flag("-p", o.preview, "preview: no shadows, no reflections, one sample in a pixel")->group(quality);
-  app.add_flag("-s", o.toggleShadowCache, "accepted for old command lines; there is no such cache")->group(quality);
+  app.add_flag("-s", o.toggleShadowCache, "accepted for old command lines; there is no such cache")
+      ->group(quality);
   app.add_option("--seed", o.seed, "another set of random numbers")->group(quality);
 
   app.add_flag("-q", o.quiet, "no progress, no advice")->group(talk);
   app.add_flag("-v", o.verbose, "report at the end")->group(talk);
   app.add_option("-V", o.verboseFile, "report into a file")->group(talk);
-  app.add_option("-F", o.reportEvery, "say how far it is every so many rows")->check(CLI::PositiveNumber)->group(talk);
+  app.add_option("-F", o.reportEvery, "say how far it is every so many rows")
+      ->check(CLI::PositiveNumber)
+      ->group(talk);
   app.footer("Exit status: 0, 1 for a bad scene or file, 2 for a bad command line.");
 }
 

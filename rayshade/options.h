@@ -12,12 +12,12 @@
 namespace rayshade {
 
 struct Options {
-  ParseOptions parse;                 // the scene file among it
-  std::string outputFile;             // -O; empty: what the scene says, else standard output
+  ParseOptions parse;      // the scene file among it
+  std::string outputFile;  // -O; empty: what the scene says, else standard output
   std::optional<PictureFormat> format;
   std::uint64_t seed = 0;
   bool quiet = false, verbose = false;
-  std::string verboseFile;            // -V: the report goes there
+  std::string verboseFile;  // -V: the report goes there
 
   // What is said on the command line; nothing: the scene file decides.
   std::vector<int> resolution, window;

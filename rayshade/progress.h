@@ -25,8 +25,8 @@ class ProgressLine {
     if (!shown_ || now - last_ < 0.1) return;
     last_ = now;
     const double spent = now - begin_;
-    std::fprintf(stderr, "\r%3d %%  row %d of %d  %.2f M %s/s", 100 * rows / std::max(allRows, 1), rows, allRows,
-                 1e-6 * static_cast<double>(rays) / std::max(spent, 1e-9), unit);
+    std::fprintf(stderr, "\r%3d %%  row %d of %d  %.2f M %s/s", 100 * rows / std::max(allRows, 1), rows,
+                 allRows, 1e-6 * static_cast<double>(rays) / std::max(spent, 1e-9), unit);
     if (rows > 0) std::fprintf(stderr, "  %.0f s left", spent * (allRows - rows) / rows);
     std::fprintf(stderr, "\033[K");
     std::fflush(stderr);

@@ -93,7 +93,8 @@ FrameResult renderFrame(const Scene& scene, const View& view, const PictureSpec&
   while (!sampler.finished()) {
     while (sampler.next(sample)) {
       ++result.counts.primaryRays;
-      const SamplePosition position = samplePosition(picture, seed, static_cast<std::uint32_t>(frame), sample);
+      const SamplePosition position =
+          samplePosition(picture, seed, static_cast<std::uint32_t>(frame), sample);
       sampler.supply(sample, tracer.trace(primaryRay(view, position, frame)));
     }
     while (sampler.takeRow(finished)) row(finished);

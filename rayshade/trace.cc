@@ -30,7 +30,8 @@ Progress followShadow(const BinTree& tree, const Model& model, const VoxelSource
     const Region* region = voxels.find(at.where);
     if (region == nullptr) return {Progress::State::elsewhere, {}, at.where, i};
     ++counts.visits;
-    if (!passShadow(model, *region, shadow, at.tExit, setting)) return {Progress::State::hit, {}, at.where, i};
+    if (!passShadow(model, *region, shadow, at.tExit, setting))
+      return {Progress::State::hit, {}, at.where, i};
   }
   return {};
 }

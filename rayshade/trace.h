@@ -20,8 +20,12 @@ struct TraceCounts {
 };
 
 inline TraceCounts operator+(const TraceCounts& a, const TraceCounts& b) {
-  return {a.primaryRays + b.primaryRays, a.transmittedRays + b.transmittedRays, a.reflectedRays + b.reflectedRays,
-          a.shadowRays + b.shadowRays,   a.visits + b.visits,                   a.hits + b.hits};
+  return {a.primaryRays + b.primaryRays,
+          a.transmittedRays + b.transmittedRays,
+          a.reflectedRays + b.reflectedRays,
+          a.shadowRays + b.shadowRays,
+          a.visits + b.visits,
+          a.hits + b.hits};
 }
 template <class Archive>
 void serialize(Archive& archive, TraceCounts& c) {
@@ -37,9 +41,9 @@ class VoxelSource {
 
 struct Progress {
   enum class State : std::uint8_t { hit, left, elsewhere } state = State::left;
-  Hit hit;                  // state == hit
-  VoxelId voxel{};          // state == elsewhere: who has it must go on
-  std::uint32_t step = 0;   // at this position of the walk
+  Hit hit;                 // state == hit
+  VoxelId voxel{};         // state == elsewhere: who has it must go on
+  std::uint32_t step = 0;  // at this position of the walk
 };
 
 // Follows a ray from position `step` of its walk until it hits, leaves the scene or comes to a voxel that is not at

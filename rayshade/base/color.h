@@ -37,7 +37,8 @@ template <class Archive>
 void serializeCompact(Archive& archive, Color& c) {
   enum class Form : std::uint8_t { black, white, other };
   Form form = Form::other;
-  if constexpr (!Archive::kReading) form = sameBits(c, kBlack) ? Form::black : sameBits(c, kWhite) ? Form::white : form;
+  if constexpr (!Archive::kReading)
+    form = sameBits(c, kBlack) ? Form::black : sameBits(c, kWhite) ? Form::white : form;
   archive(form);
   if (form == Form::other) {
     archive(c);

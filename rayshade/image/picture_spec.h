@@ -73,7 +73,8 @@ void serialize(Archive& archive, PixelFilter& f) {
 // What samplePosition() looks at; windows and limits are the host's business.
 template <class Archive>
 void serialize(Archive& archive, PictureSpec& p) {
-  archive(p.width, p.height, p.samplesPerSide, p.jitter, p.filter, p.firstFrame, p.frameLength, p.startTime, p.shutter);
+  archive(p.width, p.height, p.samplesPerSide, p.jitter, p.filter, p.firstFrame, p.frameLength, p.startTime,
+          p.shutter);
   if constexpr (Archive::kReading) {
     if (p.samplesPerSide < 1 || p.samplesPerSide > kMaxSamplesPerSide) {
       p.samplesPerSide = 1;

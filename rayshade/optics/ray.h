@@ -45,8 +45,9 @@ void serialize(Archive& archive, Medium& m) {
 template <class Archive>
 void serialize(Archive& archive, Ray& r) {
   archive(r.origin, r.direction, r.key);
-  serializeSparse(archive, Usual{r.moment.time, 0.0}, Usual{r.moment.frame, 0}, Usual{r.depth, 0}, Usual{r.sample, 0},
-                  Usual{r.contribution, kWhite}, Usual{r.extinct, 1.0}, Usual{r.media, MediumStack{}});
+  serializeSparse(archive, Usual{r.moment.time, 0.0}, Usual{r.moment.frame, 0}, Usual{r.depth, 0},
+                  Usual{r.sample, 0}, Usual{r.contribution, kWhite}, Usual{r.extinct, 1.0},
+                  Usual{r.media, MediumStack{}});
 }
 
 }  // namespace rayshade

@@ -12,7 +12,9 @@
 namespace rayshade {
 
 // d - 2 (d.n) n
-inline Vec3 mirrored(Vec3 direction, Vec3 normal) { return direction - (2 * dot(direction, normal)) * normal; }
+inline Vec3 mirrored(Vec3 direction, Vec3 normal) {
+  return direction - (2 * dot(direction, normal)) * normal;
+}
 
 // Snell: with eta = n1 / n2 and c1 = |d.n|, the cosine behind the surface is sqrt(1 - eta^2 (1 - c1^2)); nothing:
 // total reflection.  (1 - c1)(1 + c1) keeps its digits near the critical angle where 1 - c1^2 loses them.

@@ -16,9 +16,9 @@ namespace rayshade {
 // The camera of one picture, worked out.  World space.
 struct View {
   Vec3 eye;
-  Vec3 first;                 // from the eye to the upper left corner of the screen
-  Vec3 right, down;           // one pixel
-  Vec3 lensRight, lensUp;     // the half width of the lens along i and j; zero for a pinhole
+  Vec3 first;              // from the eye to the upper left corner of the screen
+  Vec3 right, down;        // one pixel
+  Vec3 lensRight, lensUp;  // the half width of the lens along i and j; zero for a pinhole
   double focalDistance = 0;
 };
 

@@ -8,7 +8,8 @@ AnyShape shapeOf(const SceneStore& store, const PlacedObject& object) {
   AnyShape shape;
   [&]<class... S>(TypeList<S...>) {
     std::size_t kind = 0;
-    (void)((static_cast<std::size_t>(object.kind) == kind++ ? (shape = store.shapes<S>()[object.body], true) : false) ||
+    (void)((static_cast<std::size_t>(object.kind) == kind++ ? (shape = store.shapes<S>()[object.body], true)
+                                                            : false) ||
            ...);
   }(AllShapes{});
   return shape;

@@ -7,7 +7,8 @@ namespace rayshade {
 namespace {
 
 // Spooled items are framed by their size.
-void readItems(Spool& spool, std::uint64_t begin, std::uint64_t end, const std::function<void(const Item&)>& take) {
+void readItems(Spool& spool, std::uint64_t begin, std::uint64_t end,
+               const std::function<void(const Item&)>& take) {
   Bytes bytes;
   for (std::uint64_t at = begin; at < end;) {
     std::uint32_t size = 0;
@@ -31,7 +32,9 @@ Affine composed(const std::vector<const FrameItem*>& chain, const Moment& moment
 ObjectStream::ObjectStream(const Exposure& exposure, Consumer consumer)
     : exposure_(exposure), consumer_(std::move(consumer)) {}
 
-void ObjectStream::surface(SurfaceId id, const Surface& surface) { surfaces_.try_emplace(number(id), surface); }
+void ObjectStream::surface(SurfaceId id, const Surface& surface) {
+  surfaces_.try_emplace(number(id), surface);
+}
 
 const Surface* ObjectStream::findSurface(SurfaceId id) const {
   const auto found = surfaces_.find(number(id));
@@ -101,7 +104,8 @@ std::vector<const FrameItem*> ObjectStream::framesOf(FrameId id, const FrameItem
 
 void ObjectStream::hand(const SceneObject& object, const FrameItem* own) {
   const auto chain = framesOf(object.frame, own);
-  const bool moves = std::any_of(chain.begin(), chain.end(), [](const FrameItem* f) { return f->frame.transforms.moves(); });
+  const bool moves =
+      std::any_of(chain.begin(), chain.end(), [](const FrameItem* f) { return f->frame.transforms.moves(); });
   const Bounds bounds = placedBounds(
       ownBounds(object), moves, [&](const Moment& moment) { return composed(chain, moment); }, exposure_);
   if (object.container == kWorld) {

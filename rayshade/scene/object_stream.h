@@ -19,8 +19,8 @@ class ObjectStream : public SceneSink {
  public:
   // Takes an object of the world with its bounds in world space.  `frames` are those between it and the world, in the
   // order of their numbers.
-  using Consumer =
-      std::function<void(const SceneObject& object, const Bounds& bounds, std::span<const FrameItem* const> frames)>;
+  using Consumer = std::function<void(const SceneObject& object, const Bounds& bounds,
+                                      std::span<const FrameItem* const> frames)>;
 
   ObjectStream(const Exposure& exposure, Consumer consumer);
 

@@ -11,8 +11,8 @@ namespace rayshade {
 namespace {
 
 [[noreturn]] void failed(const char* doing) {
-  throw std::runtime_error(std::string("cannot ") + doing + " a temporary file: " +
-                           std::generic_category().message(errno));
+  throw std::runtime_error(std::string("cannot ") + doing +
+                           " a temporary file: " + std::generic_category().message(errno));
 }
 
 }  // namespace

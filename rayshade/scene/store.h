@@ -36,11 +36,11 @@ struct PlacedObject {
 struct PlacedFrame {
   FrameId id = kRootFrame;
   FrameIndex parent = 0;
-  Affine toContainer;        // when nothing on the way moves
-  bool moves = false;        // something on the way to the container does
-  bool identity = true;      // toContainer is the identity
-  bool textured = false;     // this frame or one further out has textures
-  Frame frame;               // as written
+  Affine toContainer;     // when nothing on the way moves
+  bool moves = false;     // something on the way to the container does
+  bool identity = true;   // toContainer is the identity
+  bool textured = false;  // this frame or one further out has textures
+  Frame frame;            // as written
 };
 
 class SceneStore : public SceneSink {
@@ -63,7 +63,9 @@ class SceneStore : public SceneSink {
   const PlacedObject& object(ObjectIndex index) const { return objects_[index]; }
   const PlacedFrame& frame(FrameIndex index) const { return frames_[index]; }
   const Surface& surface(SurfaceIndex index) const { return surfaces_[index]; }
-  const Surface& surfaceOrDefault(SurfaceIndex index) const { return index == kNone ? default_ : surfaces_[index]; }
+  const Surface& surfaceOrDefault(SurfaceIndex index) const {
+    return index == kNone ? default_ : surfaces_[index];
+  }
   SurfaceId surfaceId(SurfaceIndex index) const { return index == kNone ? kNoSurface : surfaceIds_[index]; }
   std::size_t objectCount() const { return objects_.size(); }
 
@@ -96,7 +98,7 @@ class SceneStore : public SceneSink {
   std::unordered_map<std::uint32_t, SurfaceIndex> surfaceIndex_;
   std::unordered_map<std::uint32_t, std::vector<ObjectIndex>> members_;  // of each container
   std::vector<DefinitionId> definitions_;                                // in the order of their first member
-  std::vector<FrameId> unplacedFrame_;      // of the objects since `placed_`
+  std::vector<FrameId> unplacedFrame_;                                   // of the objects since `placed_`
   std::vector<SurfaceId> unplacedSurface_;
   std::size_t placed_ = 0;
   std::size_t leftOut_ = 0;

@@ -17,12 +17,12 @@ struct Intersection {
   double distance = 0;     // t of the hit, if atmosphere or attenuation ask for it
   RandomKey key{};
   std::int32_t sample = 0;
-  double extinct = 1;      // of what the ray travelled through, if it counts
-  bool inAir = true;       // outside of all media: the atmosphere applies
+  double extinct = 1;  // of what the ray travelled through, if it counts
+  bool inAir = true;   // outside of all media: the atmosphere applies
   Vec3 position, normal;
-  bool smooth = false;     // the normal is interpolated: then the geometric one counts too
+  bool smooth = false;  // the normal is interpolated: then the geometric one counts too
   Vec3 geometricNormal;
-  Surface surface;         // what is seen of it: neither its index nor how much it reflects
+  Surface surface;  // what is seen of it: neither its index nor how much it reflects
   LightStates lit;
   bool transmitted = false, reflected = false;
   Color transmitWeight, reflectWeight;
@@ -48,14 +48,14 @@ template <class Archive>
 void serialize(Archive& archive, Intersection& i) {
   Surface& surface = i.surface;
   archive(i.position, i.direction, i.normal, i.key, i.lit);
-  serializeSparse(archive, Usual{i.origin, Vec3{}}, Usual{i.distance, 0.0}, Usual{i.sample, 0}, Usual{i.extinct, 1.0},
-                  Usual{i.inAir, true}, Usual{i.geometricNormal, Vec3{}}, Usual{i.smooth, false},
-                  Usual{i.transmitted, false}, Usual{i.reflected, false}, Usual{i.transmitWeight, kBlack},
-                  Usual{i.reflectWeight, kBlack});
+  serializeSparse(archive, Usual{i.origin, Vec3{}}, Usual{i.distance, 0.0}, Usual{i.sample, 0},
+                  Usual{i.extinct, 1.0}, Usual{i.inAir, true}, Usual{i.geometricNormal, Vec3{}},
+                  Usual{i.smooth, false}, Usual{i.transmitted, false}, Usual{i.reflected, false},
+                  Usual{i.transmitWeight, kBlack}, Usual{i.reflectWeight, kBlack});
   serializeSparse(archive, Usual{surface.ambient, kBlack}, Usual{surface.diffuse, kBlack},
-                  Usual{surface.specular, kBlack}, Usual{surface.specularPower, 15.0}, Usual{surface.body, kWhite},
-                  Usual{surface.translucent, kBlack}, Usual{surface.translucency, 0.0},
-                  Usual{surface.translucentPower, 15.0});
+                  Usual{surface.specular, kBlack}, Usual{surface.specularPower, 15.0},
+                  Usual{surface.body, kWhite}, Usual{surface.translucent, kBlack},
+                  Usual{surface.translucency, 0.0}, Usual{surface.translucentPower, 15.0});
 }
 
 }  // namespace rayshade

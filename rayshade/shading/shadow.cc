@@ -5,7 +5,8 @@
 
 namespace rayshade {
 
-bool passShadow(const Model& model, const Region& region, ShadowRay& shadow, double tExit, const Setting& setting) {
+bool passShadow(const Model& model, const Region& region, ShadowRay& shadow, double tExit,
+                const Setting& setting) {
   const double end = std::min(tExit, shadow.distance);
   const Obstruction met = obstruction(model, region, shadow.ray, shadow.last, end, shadow.occluder);
   if (met.opaque) return false;

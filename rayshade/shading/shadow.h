@@ -14,6 +14,7 @@
 namespace rayshade {
 
 // Takes the ray through a region, up to tExit or its light.  False: it ends in darkness.
-bool passShadow(const Model& model, const Region& region, ShadowRay& shadow, double tExit, const Setting& setting);
+bool passShadow(const Model& model, const Region& region, ShadowRay& shadow, double tExit,
+                const Setting& setting);
 
 }  // namespace rayshade

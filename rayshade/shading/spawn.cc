@@ -99,9 +99,11 @@ Secondary spawnSecondary(const Ray& ray, const SurfacePoint& at, const Setting& 
       }
     }
   }
-  if (anyAbove(reflectWeight, kNegligible) && anyAbove(reflectWeight * ray.contribution, setting.limits.cutoff)) {
+  if (anyAbove(reflectWeight, kNegligible) &&
+      anyAbove(reflectWeight * ray.contribution, setting.limits.cutoff)) {
     spawned.reflectWeight = reflectWeight;
-    spawned.reflected = secondaryRay(ray, at, normalize(mirrored(ray.direction, at.normal)), Branch::reflected, reflectWeight);
+    spawned.reflected = secondaryRay(ray, at, normalize(mirrored(ray.direction, at.normal)),
+                                     Branch::reflected, reflectWeight);
     spawned.reflected->media = ray.media;
   }
   return spawned;

@@ -8,10 +8,10 @@
 #include <optional>
 
 #include "rayshade/base/inline_vector.h"
+#include "rayshade/optics/ray.h"
 #include "rayshade/scene/setting.h"
 #include "rayshade/scene/store.h"
 #include "rayshade/shading/surface_point.h"
-#include "rayshade/optics/ray.h"
 
 namespace rayshade {
 
@@ -29,9 +29,9 @@ using LightSamples = InlineVector<LightSample, 8>;
 // A shadow ray: from a hit to a point of a light.
 struct ShadowRay {
   Ray ray;
-  double distance = 0;     // things at this distance or farther do not matter          [world units]
-  Color through = kWhite;  // what has been let through so far
-  double last = 0;         // t of the last transparent surface that was crossed
+  double distance = 0;       // things at this distance or farther do not matter          [world units]
+  Color through = kWhite;    // what has been let through so far
+  double last = 0;           // t of the last transparent surface that was crossed
   double insideExtinct = 1;  // extinct of the solid it is in, if `inside`
   bool inside = false;
   ObjectIndex occluder = kNone;  // what to try first, see obstruction(); not sent

@@ -138,7 +138,8 @@ bool Bvh::traverse(const Vec3& origin, const Vec3& direction, double tMin, const
       const Float4 enters = maximum(maximum(near(0), near(1)), maximum(near(2), zero));
       const Float4 leaves = minimum(minimum(far(0), far(1)), minimum(far(2), all(limit)));
       const Int4 touched = (enters <= leaves) & Int4{1, 2, 4, 8};
-      const auto halves = reinterpret_cast<Long2>(touched);  // stays in registers, unlike bit_cast to an array
+      const auto halves =
+          reinterpret_cast<Long2>(touched);  // stays in registers, unlike bit_cast to an array
       const auto either = static_cast<std::uint64_t>(halves[0] | halves[1]);
       std::uint32_t lanes = static_cast<std::uint32_t>(either | either >> 32);
       if (lanes != 0) {

@@ -54,11 +54,13 @@ void collect(const BinTree& tree, const Pyramid& pyramid, std::uint32_t index, c
 Pyramid pyramidOf(Vec3 apex, const std::array<Vec3, 4>& corners) {
   Pyramid pyramid;
   pyramid.apex = apex;
-  pyramid.axis = normalize(normalize(corners[0]) + normalize(corners[1]) + normalize(corners[2]) + normalize(corners[3]));
+  pyramid.axis = normalize(normalize(corners[0]) + normalize(corners[1]) + normalize(corners[2]) +
+                           normalize(corners[3]));
   for (int i = 0; i < 4; ++i) {
     const Vec3 side = normalize(cross(corners[i], corners[(i + 1) % 4]));
     // Inside is where the opposite corners are; a side that the others do not agree on cuts nothing off.
-    const double inner = dot(side, normalize(corners[(i + 2) % 4])), inner2 = dot(side, normalize(corners[(i + 3) % 4]));
+    const double inner = dot(side, normalize(corners[(i + 2) % 4])),
+                 inner2 = dot(side, normalize(corners[(i + 3) % 4]));
     if (inner > 0 && inner2 > 0) pyramid.inward[i] = side;
     if (inner < 0 && inner2 < 0) pyramid.inward[i] = -side;
     if (dot(pyramid.axis, corners[i]) <= 0) pyramid.axis = {};  // wider than a half-space

@@ -58,7 +58,8 @@ Region Model::regionOf(std::vector<ObjectIndex> objects) const {
 
 Target Model::target(ObjectIndex index) const {
   const PlacedObject& object = store_.object(index);
-  Target target{index, store_.frame(object.frame).identity ? 0 : object.frame, object.body, object.kind, true};
+  Target target{index, store_.frame(object.frame).identity ? 0 : object.frame, object.body, object.kind,
+                true};
   if (store_.anyTransparent()) {
     // An instance or CSG is looked into only when it is hit; until then it may be transparent.
     const bool whole = object.kind != kInstanceKind && object.kind != kCsgKind;
@@ -118,8 +119,7 @@ void Model::prepare(const Exposure& exposure) {
 
 std::size_t Model::bytes() const {
   std::size_t total = store_.bytes();
-  for (const Definition& definition : definitions_)
-    total += definition.region.bytes();
+  for (const Definition& definition : definitions_) total += definition.region.bytes();
   return total;
 }
 

@@ -51,8 +51,9 @@ double Probe::intersectAny(const Target& target, double tMin, double tMax) {
   if (target.kind == kCsgKind) return csgCrossing(model_, store.csg(target.body), local, moment_, tMin).t;
   double t = kNoHit;
   [&]<class... S>(TypeList<S...>) {
-    (void)((target.kind == kKindOf<S> ? (t = intersectShape(store.shapes<S>()[target.body], local, tMin), true)
-                                      : false) ||
+    (void)((target.kind == kKindOf<S>
+                ? (t = intersectShape(store.shapes<S>()[target.body], local, tMin), true)
+                : false) ||
            ...);
   }(AllShapes{});
   return t;
@@ -63,18 +64,18 @@ Hit nearestHit(const Model& model, const Region& region, const LocalRay& ray, co
   Probe probe(model, ray, moment);
   Hit best;
   double limit = tExit * ray.scale;  // in the units of the region, for the accelerator
-  region.bvh.nearest(
-      ray.origin, ray.direction, tMin * ray.scale, limit, [&](std::uint32_t first, std::uint32_t count) {
-        for (const Target& target : std::span(region.objects).subspan(first, count)) {
-          const double t = probe.intersect(target, tMin, std::min(best.t, tExit));
-          if (!(t < tExit) || t > best.t) continue;
-          if (t == best.t &&
-              precedence(model.store().object(target.object)) >= precedence(model.store().object(best.object)))
-            continue;
-          best = {t, target.object};
-          limit = t * ray.scale;
-        }
-      });
+  region.bvh.nearest(ray.origin, ray.direction, tMin * ray.scale, limit,
+                     [&](std::uint32_t first, std::uint32_t count) {
+                       for (const Target& target : std::span(region.objects).subspan(first, count)) {
+                         const double t = probe.intersect(target, tMin, std::min(best.t, tExit));
+                         if (!(t < tExit) || t > best.t) continue;
+                         if (t == best.t && precedence(model.store().object(target.object)) >=
+                                                precedence(model.store().object(best.object)))
+                           continue;
+                         best = {t, target.object};
+                         limit = t * ray.scale;
+                       }
+                     });
   return best;
 }
 

@@ -39,7 +39,8 @@ inline constexpr BodyKind kKindOf = [] {
 class Probe {
  public:
   // `ray` in the space of the container.
-  Probe(const Model& model, const LocalRay& ray, const Moment& moment) : model_(model), ray_(ray), moment_(moment) {}
+  Probe(const Model& model, const LocalRay& ray, const Moment& moment)
+      : model_(model), ray_(ray), moment_(moment) {}
 
   // The first t > tMin at which the ray meets the object, in world units; `tMax` is a hint that may be ignored.
   double intersect(const Target& target, double tMin, double tMax = kNoHit) {

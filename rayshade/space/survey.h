@@ -17,10 +17,11 @@ struct Survey {
 class SurveySink : public SceneSink {
  public:
   explicit SurveySink(const Exposure& exposure)
-      : stream_(exposure, [this](const SceneObject&, const Bounds& bounds, std::span<const FrameItem* const>) {
-          if (bounds.finite()) survey_.world = join(survey_.world, bounds);
-          survey_.density.add(bounds);
-        }) {}
+      : stream_(exposure,
+                [this](const SceneObject&, const Bounds& bounds, std::span<const FrameItem* const>) {
+                  if (bounds.finite()) survey_.world = join(survey_.world, bounds);
+                  survey_.density.add(bounds);
+                }) {}
 
   void surface(SurfaceId id, const Surface& surface) override { stream_.surface(id, surface); }
   void frame(FrameId id, Frame frame) override {

@@ -41,7 +41,8 @@ HostOptions randomSchedule(std::uint64_t seed) {
   policy.shadows = dice.one({ShadowPolicy::forward, ShadowPolicy::local, ShadowPolicy::automatic});
   policy.secondariesTravel = dice.below(3) != 0;
   policy.shadeAtOnce = dice.below(2) == 0;
-  policy.cacheBytes = dice.one<std::uint64_t>({0, 1, 20'000, 1 << 26});  // none, no room for any cell, a few, all
+  policy.cacheBytes =
+      dice.one<std::uint64_t>({0, 1, 20'000, 1 << 26});  // none, no room for any cell, a few, all
   policy.outstanding = dice.one({1u, 64u});
   policy.horizon = dice.one<Horizon>({{Horizon::Kind::automatic, 0},
                                       {Horizon::Kind::cells, 0},
@@ -109,7 +110,8 @@ TEST(Schedules, ScenesOfTheSuiteHaveTheSameBits) {
     job.options.window = {0, 39, 0, 29};
     HostOptions host = randomSchedule(70'000 + number);
     host.wishes.pyramids = 1 + static_cast<std::uint32_t>(number % 2);
-    EXPECT_EQ(difference(renderByTasks(job, host, {.seed = number}).frames, renderSequentially(job).frames), "");
+    EXPECT_EQ(difference(renderByTasks(job, host, {.seed = number}).frames, renderSequentially(job).frames),
+              "");
     ++number;
   }
 }
