@@ -15,6 +15,7 @@ void RayWorker::begin(TraceSetting setting, std::uint32_t recordBase) {
   at_ = std::move(setting);
   at_.cellBytes.resize(cellCount(at_.tree));
   recordBase_ = recordBase;
+  occluders_.assign(lightPointCount(at_.setting), {});
   parked_.clear();
   parkedCount_ = 0;
   asked_.clear();

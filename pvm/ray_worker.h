@@ -89,6 +89,12 @@ class RayWorker : public GroundSource {
     RecordId record = 0;
   };
 
+  // What stopped the last shadow ray to a light point: asked first, which can't change the answer.
+  struct Occluder {
+    ObjectIndex object = kNone;
+    std::uint32_t ground = 0;
+  };
+
   void traceBundle(Bundle&& bundle, const LightSource& light);
   void park(Bundle&& bundle, CellId missing, const LightSource* light);
   bool fetchingPays(CellId missing, std::size_t rays) const;
@@ -103,7 +109,8 @@ class RayWorker : public GroundSource {
   CacheCounts shadowCounts_;
   ObjectCache cache_;
   Model noModel_;
-  Region nothing_;  // of an empty cell
+  Region nothing_;                   // of an empty cell
+  std::vector<Occluder> occluders_;  // by light point
 
   std::uint32_t recordBase_ = 0;
   std::uint64_t serial_ = 0;                                       // of the next intersection found here
@@ -132,9 +139,13 @@ void RayWorker::shade(const Ray& ray, const ReplyTo& to, const Hit& hit, const M
     for (; point < end; ++point) {
       if (spawned.lit[point] != Lit::asked) continue;
       ++counts_.shadowRays;
-      Pending pending{shadowRay(ray, at, at_.setting, point), 0, static_cast<Slot>(point)};
+      Pending pending{shadowRay(ray, at, spawned.samples[point]), 0, static_cast<Slot>(point)};
+      Occluder& occluder = occluders_[point];
+      pending.shadow.occluder = occluder.object;
+      pending.shadow.occluderGround = occluder.ground;
       const LocalProgress progress =
           followLocally(at_.tree, *this, pending.shadow, pending.unit, at_.setting, counts_);
+      occluder = {pending.shadow.occluder, pending.shadow.occluderGround};
       if (progress.state == LocalProgress::State::missing) {
         expect.pending.push_back(pending.slot);
         bundle.rays.push_back(std::move(pending));
@@ -147,7 +158,7 @@ void RayWorker::shade(const Ray& ray, const ReplyTo& to, const Hit& hit, const M
   expect.hit = describe(ray, hit.t, at, spawned, at_.setting);
   if (at_.policy.shadeAtOnce && expect.pending.empty() && !spawned.transmitted && !spawned.reflected) {
     ++combined_;
-    answer(to, combine(expect.hit, gatheredFrom(expect), at_.setting));
+    answer(to, combine(expect.hit, gatheredFrom(expect), at_.setting, spawned.samples));
     return;
   }
   desk_.outbox.post(shader, expect);

@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rayshade/local_trace.h"
 
+#include <optional>
+#include <utility>
+
 namespace rayshade {
 namespace {
+
+constexpr std::uint32_t kOwnGround = 0xffffffffu;  // in place of the number of a cell
 
 // Walks until `visit(ground, tExit)` is true, the scene or `limit` is left, or something is not at hand.
 template <class Visit>
@@ -10,20 +15,25 @@ LocalProgress walkLocally(const BinTree& tree, GroundSource& source, Vec3 origin
                           double limit, std::uint32_t& unit, Visit visit) {
   std::uint32_t passed = 0;
   VoxelWalk voxels(tree, origin, direction);
-  CellWalk cells(tree, origin, direction);
+  std::optional<CellWalk> cells;  // begun when the first voxel is met that is not one's own
   WalkStep<CellId> cell;
-  bool cellIsSet = cells.next(cell);
+  bool cellIsSet = false;
   WalkStep<VoxelId> step;
   for (std::uint32_t i = 0; voxels.next(step) && step.tEnter < limit; ++i) {
     if (const Ground own = source.voxel(step.where); own.region != nullptr) {
       if (passed++ < unit) continue;
       ++unit;
-      if (visit(own, step.tExit)) return {LocalProgress::State::hit, {}, own.model, {}, step.where, i};
+      if (visit(own, kOwnGround, step.tExit))
+        return {LocalProgress::State::hit, {}, own.model, {}, step.where, i};
       continue;
     }
-    while (cellIsSet && voxelOfCell(tree, cell.where) != step.where) cellIsSet = cells.next(cell);
+    if (!cells) {
+      cells.emplace(tree, origin, direction);
+      cellIsSet = cells->next(cell);
+    }
+    while (cellIsSet && voxelOfCell(tree, cell.where) != step.where) cellIsSet = cells->next(cell);
     for (; cellIsSet && voxelOfCell(tree, cell.where) == step.where && cell.tEnter < limit;
-         cellIsSet = cells.next(cell)) {
+         cellIsSet = cells->next(cell)) {
       if (passed < unit) {
         ++passed;
         continue;
@@ -33,7 +43,7 @@ LocalProgress walkLocally(const BinTree& tree, GroundSource& source, Vec3 origin
         return {LocalProgress::State::missing, {}, nullptr, cell.where, step.where, i};
       ++passed;
       ++unit;
-      if (visit(fetched, cell.tExit))
+      if (visit(fetched, static_cast<std::uint32_t>(cell.where), cell.tExit))
         return {LocalProgress::State::hit, {}, fetched.model, cell.where, step.where, i};
     }
   }
@@ -46,7 +56,7 @@ LocalProgress followLocally(const BinTree& tree, GroundSource& source, const Ray
                             TraceCounts& counts) {
   Hit hit;
   LocalProgress progress = walkLocally(tree, source, ray.origin, ray.direction, kInfinity, unit,
-                                       [&](const Ground& ground, double tExit) {
+                                       [&](const Ground& ground, std::uint32_t, double tExit) {
                                          ++counts.visits;
                                          hit = visit(*ground.model, *ground.region, ray, 0, tExit);
                                          return hit.found();
@@ -59,10 +69,20 @@ LocalProgress followLocally(const BinTree& tree, GroundSource& source, const Ray
 LocalProgress followLocally(const BinTree& tree, GroundSource& source, ShadowRay& shadow, std::uint32_t& unit,
                             const Setting& setting, TraceCounts& counts) {
   return walkLocally(tree, source, shadow.ray.origin, shadow.ray.direction, shadow.distance, unit,
-                     [&](const Ground& ground, double tExit) {
+                     [&](const Ground& ground, std::uint32_t id, double tExit) {
                        ++counts.visits;
-                       shadow.occluder = kNone;  // an object of another model
-                       return !passShadow(*ground.model, *ground.region, shadow, tExit, setting);
+                       // What stopped the ray before counts in the model that it belongs to.
+                       ObjectIndex elsewhere = kNone;
+                       if (shadow.occluderGround != id) std::swap(shadow.occluder, elsewhere);
+                       const bool passes = passShadow(*ground.model, *ground.region, shadow, tExit, setting);
+                       if (shadow.occluderGround != id) {
+                         if (passes) {
+                           shadow.occluder = elsewhere;
+                         } else {
+                           shadow.occluderGround = id;
+                         }
+                       }
+                       return !passes;
                      });
 }
 

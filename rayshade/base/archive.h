@@ -41,7 +41,15 @@ class Writer {
 
   template <class... T>
   void operator()(const T&... values) {
-    (put(values), ...);
+    if constexpr ((PlainNumber<T> && ...)) {
+      // Numbers in a row are made room for once: most of what travels is points, directions and colours.
+      const std::size_t at = out_.size();
+      out_.resize(at + (sizeof(T) + ... + 0));
+      std::byte* to = out_.data() + at;
+      ((std::memcpy(to, &values, sizeof values), to += sizeof values), ...);
+    } else {
+      (put(values), ...);
+    }
   }
 
  private:
@@ -106,7 +114,18 @@ class Reader {
 
   template <class... T>
   void operator()(T&... values) {
-    (get(values), ...);
+    if constexpr ((PlainNumber<T> && ...) && !(std::is_same_v<T, bool> || ...)) {
+      if ((sizeof(T) + ... + 0) > in_.size()) {
+        fail();
+        ((values = T{}), ...);
+        return;
+      }
+      const std::byte* from = in_.data();
+      ((std::memcpy(&values, from, sizeof values), from += sizeof values), ...);
+      in_ = in_.subspan((sizeof(T) + ... + 0));
+    } else {
+      (get(values), ...);
+    }
   }
 
  private:
