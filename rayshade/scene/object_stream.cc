@@ -20,10 +20,12 @@ void readItems(Spool& spool, std::uint64_t begin, std::uint64_t end,
   }
 }
 
-// Where a chain of frames, innermost first, takes a point at a moment.
+// Where a chain of frames, innermost first, takes a point at a moment.  Multiplied from the outside in, like the maps of
+// a SceneStore: the product of the same matrices in another order of brackets has other last bits.
 Affine composed(const std::vector<const FrameItem*>& chain, const Moment& moment) {
   Affine map;
-  for (const FrameItem* f : chain) map = then(map, chainAt(f->frame.transforms, moment));
+  for (auto f = chain.rbegin(); f != chain.rend(); ++f)
+    map = then(chainAt((*f)->frame.transforms, moment), map);
   return map;
 }
 
