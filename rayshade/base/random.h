@@ -8,6 +8,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <bit>
 #include <cstdint>
 
 namespace rayshade {
@@ -45,10 +46,11 @@ constexpr RandomKey child(RandomKey key, Branch branch, std::uint32_t index = 0)
   return child(key, static_cast<std::uint64_t>(branch) + index);
 }
 
-// The key of a sample of the picture.
+// The key of a sample of the picture.  The seed is turned by half its bits, so that frame 1 with seed 2 is not frame 2 with
+// seed 1.
 constexpr RandomKey sampleKey(std::uint64_t seed, std::uint32_t frame, std::uint32_t x, std::uint32_t y,
                               std::uint32_t cell) {
-  RandomKey key = child(RandomKey{mixBits(seed)}, frame);
+  RandomKey key = child(RandomKey{mixBits(std::rotl(seed, 32))}, frame);
   key = child(key, static_cast<std::uint64_t>(y) << 32 | x);
   return child(key, cell);
 }
