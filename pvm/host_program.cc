@@ -28,7 +28,7 @@ void settleSchedule(HostProgramOptions& o, std::uint32_t hosts) {
   HostOptions& host = o.host;
   DemandPolicy& policy = host.policy;
   if (o.schedule == "hybrid") {
-    host.wishes.pyramids = hosts;
+    host.wishes.pyramids = 2 * hosts;
     policy.shadows = ShadowPolicy::automatic;
   } else if (o.schedule == "pipelined") {
     host.wishes.pyramids = 2 * hosts;
@@ -119,9 +119,9 @@ void declareHostOptions(CLI::App& app, HostProgramOptions& o) {
 double megabytes(std::uint64_t bytes) { return 1e-6 * static_cast<double>(bytes); }
 
 void writeTable(std::FILE* to, const HostSummary& s, std::uint64_t pictureSum) {
-  std::fprintf(to, "%-21s %-12s %9s %9s %10s %9s %9s %8s %8s %7s %7s %7s %7s\n", "task", "host", "objects",
-               "rays", "visits", "hits", "shaded", "msg in", "msg out", "MB in", "MB out", "busy s",
-               "peak MB");
+  std::fprintf(to, "%-21s %-12s %9s %9s %10s %9s %9s %8s %8s %7s %7s %7s %7s %7s %7s\n", "task", "host",
+               "objects", "rays", "visits", "hits", "shaded", "msg in", "msg out", "MB in", "MB out",
+               "busy s", "idle s", "waiting", "peak MB");
   for (const TaskSummary& task : s.tasks) {
     const Report& r = task.report;
     const TraceCounts& c = r.counts;
@@ -129,15 +129,15 @@ void writeTable(std::FILE* to, const HostSummary& s, std::uint64_t pictureSum) {
         std::string(programName(task.placement.role)).substr(9) + " " + std::to_string(task.placement.index);
     std::fprintf(to,
                  "%-21s %-12.12s %9" PRIu64 " %9" PRIu64 " %10" PRIu64 " %9" PRIu64 " %9" PRIu64 " %8" PRIu64
-                 " %8" PRIu64 " %7.1f %7.1f %7.2f %7.1f\n",
+                 " %8" PRIu64 " %7.1f %7.1f %7.2f %7.2f %7" PRIu64 " %7.1f\n",
                  name.c_str(), task.placement.host.c_str(), task.objects,
                  c.primaryRays + c.transmittedRays + c.reflectedRays + c.shadowRays, c.visits, c.hits,
                  r.combined, r.messagesIn, r.messagesOut, megabytes(r.bytesIn), megabytes(r.bytesOut),
-                 r.busySeconds, megabytes(r.peakMemory));
+                 r.busySeconds, r.idleSeconds, r.peakQueue, megabytes(r.peakMemory));
   }
   for (const TaskSummary& task : s.tasks) {
     const Report& r = task.report;
-    if (r.cache.asked == 0 && r.pyramids == 0) continue;
+    if (r.cache.fetched == 0 && r.pyramids == 0) continue;
     auto percent = [](std::uint64_t part, std::uint64_t whole) {
       return whole == 0 ? 100.0 : 100.0 * static_cast<double>(part) / static_cast<double>(whole);
     };

@@ -372,7 +372,7 @@ void HostTask::renderFrame(const View& view, const PictureSpec& picture, std::in
   const std::uint32_t perCluster = voxelTasks / directory_.clusters;
   const std::uint32_t voxels = perCluster * std::max(1u, options_.voxelsPerTask);
   // A cell is what is fetched at a time: small enough to be a part, large enough to be worth a message.
-  constexpr std::uint64_t kObjectsPerCell = 128;
+  constexpr std::uint64_t kObjectsPerCell = 2048;
   const auto bySize =
       static_cast<std::uint32_t>(std::min<std::uint64_t>(survey_.objects / kObjectsPerCell, 1 << 16));
   const bool fetches = !directory_.pyramidTasks.empty() || options_.wishes.pyramids > 0 ||

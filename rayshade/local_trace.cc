@@ -59,6 +59,7 @@ LocalProgress followLocally(const BinTree& tree, GroundSource& source, const Ray
                                        [&](const Ground& ground, std::uint32_t, double tExit) {
                                          ++counts.visits;
                                          hit = visit(*ground.model, *ground.region, ray, 0, tExit);
+                                         counts.tests += hit.tests;
                                          return hit.found();
                                        });
   progress.hit = hit;
@@ -74,7 +75,9 @@ LocalProgress followLocally(const BinTree& tree, GroundSource& source, ShadowRay
                        // What stopped the ray before counts in the model that it belongs to.
                        ObjectIndex elsewhere = kNone;
                        if (shadow.occluderGround != id) std::swap(shadow.occluder, elsewhere);
+                       const std::uint32_t before = shadow.tests;
                        const bool passes = passShadow(*ground.model, *ground.region, shadow, tExit, setting);
+                       counts.tests += shadow.tests - before;
                        if (shadow.occluderGround != id) {
                          if (passes) {
                            shadow.occluder = elsewhere;

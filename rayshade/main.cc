@@ -31,6 +31,8 @@ void writeReport(std::FILE* to, const Scene& scene, const FrameResult& result, c
   line("all rays", all);
   line("hits", c.hits);
   line("supersampled pixels", result.samples.supersampled);
+  std::fprintf(to, "%-24s %12.2f\n", "object tests per ray",
+               static_cast<double>(c.tests) / static_cast<double>(std::max<std::uint64_t>(all, 1)));
   line("objects", scene.model.store().objectCount());
   std::fprintf(to, "%-24s %12.2f M\n", "rays per second",
                1e-6 * static_cast<double>(all) / std::max(times.trace, 1e-9));

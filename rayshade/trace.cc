@@ -13,6 +13,7 @@ Progress followRay(const BinTree& tree, const Model& model, const VoxelSource& v
     if (region == nullptr) return {Progress::State::elsewhere, {}, at.where, i};
     ++counts.visits;
     const Hit hit = visit(model, *region, ray, 0, at.tExit);
+    counts.tests += hit.tests;
     if (hit.found()) {
       ++counts.hits;
       return {Progress::State::hit, hit, at.where, i};
@@ -30,8 +31,10 @@ Progress followShadow(const BinTree& tree, const Model& model, const VoxelSource
     const Region* region = voxels.find(at.where);
     if (region == nullptr) return {Progress::State::elsewhere, {}, at.where, i};
     ++counts.visits;
-    if (!passShadow(model, *region, shadow, at.tExit, setting))
-      return {Progress::State::hit, {}, at.where, i};
+    const std::uint32_t before = shadow.tests;
+    const bool passes = passShadow(model, *region, shadow, at.tExit, setting);
+    counts.tests += shadow.tests - before;
+    if (!passes) return {Progress::State::hit, {}, at.where, i};
   }
   return {};
 }

@@ -9,11 +9,13 @@ bool passShadow(const Model& model, const Region& region, ShadowRay& shadow, dou
                 const Setting& setting) {
   const double end = std::min(tExit, shadow.distance);
   const Obstruction met = obstruction(model, region, shadow.ray, shadow.last, end, shadow.occluder);
+  shadow.tests += met.tests;
   if (met.opaque) return false;
   if (!met.transparent) return true;
   if (!setting.transparentShadows) return false;
   for (;;) {
     const Hit hit = visit(model, region, shadow.ray, shadow.last, end);
+    shadow.tests += hit.tests;
     if (!hit.found()) return true;
     if (boundSurface(model, pathTo(model, shadow.ray, hit)).transparency < kNegligible) return false;
     const SurfacePoint at = evaluateSurface(model, hit, shadow.ray, setting);

@@ -34,6 +34,7 @@ struct ShadowRay {
   double last = 0;           // t of the last transparent surface that was crossed
   double insideExtinct = 1;  // extinct of the solid it is in, if `inside`
   bool inside = false;
+  std::uint32_t tests = 0;           // objects that were tested; not sent
   ObjectIndex occluder = kNone;      // what to try first, see obstruction(); not sent
   std::uint32_t occluderGround = 0;  // where several models are at hand: which one it belongs to; not sent
 };

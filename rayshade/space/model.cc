@@ -145,12 +145,13 @@ Obstruction obstruction(const Model& model, const Region& region, const Ray& ray
   Probe probe(model, {ray.origin, ray.direction, 1}, ray.moment);
   if (occluder != kNone) {
     const Target target = model.target(occluder);
-    if (target.opaque && probe.intersect(target, tMin) < tExit) return {true, false};
+    if (target.opaque && probe.intersect(target, tMin) < tExit) return {true, false, 1};
   }
   Obstruction met;
   region.bvh.any(ray.origin, ray.direction, tMin, tExit, [&](std::uint32_t first, std::uint32_t count) {
     for (const Target& target : std::span(region.objects).subspan(first, count)) {
       if (!target.opaque && met.transparent) continue;  // nothing new could be learned
+      ++met.tests;
       if (!(probe.intersect(target, tMin) < tExit)) continue;
       if (target.opaque) {
         met.opaque = true;

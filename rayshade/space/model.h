@@ -35,6 +35,7 @@ struct Region {
 struct Hit {
   double t = kNoHit;  // world units from the origin of the ray
   ObjectIndex object = kNone;
+  std::uint32_t tests = 0;  // objects that were tested, instances and CSG nodes as one each
   bool found() const { return object != kNone; }
 };
 
@@ -97,6 +98,7 @@ Hit visit(const Model& model, const Region& region, const Ray& ray, double tMin,
 // the same light are often stopped by the same thing.  It changes when the answer is found, never the answer.
 struct Obstruction {
   bool opaque = false, transparent = false;
+  std::uint32_t tests = 0;  // objects that were tested
 };
 Obstruction obstruction(const Model& model, const Region& region, const Ray& ray, double tMin, double tExit,
                         ObjectIndex& occluder);

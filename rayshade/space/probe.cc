@@ -66,13 +66,15 @@ Hit nearestHit(const Model& model, const Region& region, const LocalRay& ray, co
   double limit = tExit * ray.scale;  // in the units of the region, for the accelerator
   region.bvh.nearest(ray.origin, ray.direction, tMin * ray.scale, limit,
                      [&](std::uint32_t first, std::uint32_t count) {
+                       best.tests += count;
                        for (const Target& target : std::span(region.objects).subspan(first, count)) {
                          const double t = probe.intersect(target, tMin, std::min(best.t, tExit));
                          if (!(t < tExit) || t > best.t) continue;
                          if (t == best.t && precedence(model.store().object(target.object)) >=
                                                 precedence(model.store().object(best.object)))
                            continue;
-                         best = {t, target.object};
+                         best.t = t;
+                         best.object = target.object;
                          limit = t * ray.scale;
                        }
                      });
