@@ -42,7 +42,7 @@ def height(x, y):
         frequency *= 2.1
     shore = 0.30 + 0.10 * noise(3 * x, 0.5, 77)
     rise = max(0.0, min(1.0, (y - shore) / 0.55))
-    sides = 0.22 * abs(2 * x - 1) ** 1.6
+    sides = 0.12 * abs(2 * x - 1) ** 1.6
     return (total - 0.62) * (0.06 + 0.30 * rise * rise * (3 - 2 * rise) + sides) - 0.055 + 0.10 * rise + 0.35 * sides
 
 
