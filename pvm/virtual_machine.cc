@@ -82,7 +82,7 @@ MachineState knock(const std::string& path) {
   if (path.empty() || path[0] != '/' || path.size() >= sizeof address.sun_path) return MachineState::stale;
   std::memcpy(address.sun_path, path.data(), path.size());
   const int descriptor = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
-  if (descriptor < 0) return MachineState::stale;
+  if (descriptor < 0) return MachineState::foreign;  // nobody knows: then it is not ours to remove
   const bool answered =
       connect(descriptor, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 ||
       errno == EAGAIN;
@@ -245,7 +245,9 @@ void removeRouteSockets() {
     const long process = std::strtol(name.c_str() + prefix.size(), nullptr, 10);
     std::ifstream commandLine("/proc/" + std::to_string(process) + "/cmdline");
     const bool ended = commandLine.peek() == std::ifstream::traits_type::eof();
-    if (process > 0 && (ended || process == getpid())) unlink(path.c_str());
+    if (process <= 0 || (!ended && process != getpid())) continue;
+    // The daemon of an added host listens at a socket with the number of its parent, which has ended.
+    if (knock(path) == MachineState::stale) unlink(path.c_str());
   }
 }
 
@@ -283,6 +285,7 @@ VirtualMachine::VirtualMachine(const MachineOptions& options) {
     }
   }
 
+  if (environment("PVMSOCK").empty()) unsetenv("PVMSOCK");  // libpvm takes an empty one for an address
   if (geteuid() == 0) setenv("PVM_ALLOW_ROOT", "1", 0);  // differs from PVM, which wants root to ask for it
   if (environment("PVM_ROOT").empty() && std::filesystem::is_directory("/usr/lib/pvm3")) {
     setenv("PVM_ROOT", "/usr/lib/pvm3", 1);
@@ -400,9 +403,9 @@ void VirtualMachine::halt() {
     daemon_ = 0;
     sigaction(SIGTERM, &before, nullptr);
     removeLeftovers();
-    removeRouteSockets();
     if (!alive)
       pvm_exit();  // libpvm forgets the dead daemon - at once now that no file leads to it, else after 4 s
+    removeRouteSockets();
   }
   if (!privateDirectory_.empty()) {
     std::error_code ignored;

@@ -40,8 +40,8 @@ MachineState lookForMachine();
 // The path of the daemon, or "" when PVM is not installed.
 std::string daemonProgram();
 
-// libpvm leaves the names of the sockets at which direct routes were opened; takes away those of this process (no
-// route may be opening then) and of processes that have ended.
+// libpvm leaves the names of the sockets at which direct routes were opened; takes away those of this process and of
+// processes that have ended, where nobody listens.
 void removeRouteSockets();
 
 // What a host file wishes: one line of it, with the options of the `*` line before in front of its own.

@@ -6,6 +6,7 @@
 #include <signal.h>
 #include <sys/socket.h>
 #include <sys/un.h>
+#include <sys/wait.h>
 
 #include <chrono>
 #include <cstdio>
@@ -376,14 +377,20 @@ TEST_F(MachineTest, AMachineThatIsThereIsUsedAndLeftAlone) {
   EXPECT_EQ(lookForMachine(), MachineState::alive);
 }
 
-TEST_F(MachineTest, AStaleAddressFileIsSurvivedQuickly) {
-  const std::string socketName = machine.directory() + "/pvmtmp1.0";
+// A socket at which somebody listens, or has listened until he ended.
+int listenAt(const std::string& path) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
-  std::strcpy(address.sun_path, socketName.c_str());
-  const int dead = socket(AF_UNIX, SOCK_STREAM, 0);
-  ASSERT_EQ(bind(dead, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
-  close(dead);
+  std::strncpy(address.sun_path, path.c_str(), sizeof address.sun_path - 1);
+  const int listener = socket(AF_UNIX, SOCK_STREAM, 0);
+  EXPECT_EQ(bind(listener, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+  EXPECT_EQ(listen(listener, 5), 0);
+  return listener;
+}
+
+TEST_F(MachineTest, AStaleAddressFileIsSurvivedQuickly) {
+  const std::string socketName = machine.directory() + "/pvmtmp1.0";
+  close(listenAt(socketName));
   std::ofstream(machine.addressFile()) << socketName << "\n";
   EXPECT_EQ(lookForMachine(), MachineState::stale);
   const auto start = std::chrono::steady_clock::now();
@@ -391,6 +398,27 @@ TEST_F(MachineTest, AStaleAddressFileIsSurvivedQuickly) {
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(2));
   machine.halt();
   EXPECT_TRUE(nothingLeft(machine.directory()));
+}
+
+// The daemon of an added host goes into the background: its socket has the number of a process that has ended.
+TEST_F(MachineTest, ASocketOfTheEndedGoesOnlyWhenNobodyListens) {
+  const pid_t ended = fork();
+  if (ended == 0) _exit(0);
+  waitpid(ended, nullptr, 0);
+  const std::string prefix = machine.directory() + "/pvmtmp" + std::to_string(ended);
+  const int daemon = listenAt(prefix + ".0");
+  close(listenAt(prefix + ".1"));
+  removeRouteSockets();
+  EXPECT_TRUE(std::filesystem::exists(prefix + ".0"));
+  EXPECT_FALSE(std::filesystem::exists(prefix + ".1"));
+  close(daemon);
+}
+
+TEST_F(MachineTest, AnEmptyPvmsockMeansNone) {
+  setenv("PVMSOCK", "", 1);
+  EXPECT_TRUE(machine.start().startedHere());
+  EXPECT_EQ(lookForMachine(), MachineState::alive);
+  EXPECT_EQ(std::getenv("PVMSOCK"), nullptr);
 }
 
 TEST_F(MachineTest, AStaleAddressFileCannotMakeUsRemoveAnotherFile) {
