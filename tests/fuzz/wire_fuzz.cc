@@ -5,6 +5,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cstdint>
 
+#include "pvm/pyramid_task.h"
 #include "pvm/shade_task.h"
 #include "pvm/voxel_task.h"
 #include "tests/support/null_link.h"
@@ -33,6 +34,7 @@ void feed(std::span<const std::byte> input) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::span<const std::byte> input(reinterpret_cast<const std::byte*>(data), size);
   feed<VoxelTask>(input);
+  feed<PyramidTask>(input);
   feed<ShadeTask>(input);
   return 0;
 }

@@ -6,6 +6,7 @@
 
 #include <set>
 
+#include "pvm/pyramid_task.h"
 #include "pvm/shade_task.h"
 #include "pvm/voxel_task.h"
 #include "tests/support/null_link.h"
@@ -23,8 +24,13 @@ std::vector<Bytes> traffic() {
     HostOptions host;
     host.wishes.voxels = 3;
     host.wishes.shades = 2;
+    host.wishes.pyramids = static_cast<std::uint32_t>(seed % 4) / 2 + 1;
+    host.cells = 20;
+    host.tileSamples = 16;
     host.window = 20;
     host.policy.shadows = ShadowPolicy{static_cast<std::uint8_t>(seed % 3)};
+    host.policy.secondariesTravel = seed % 2 == 0;
+    if (seed % 2 == 0) host.policy.horizon = {Horizon::Kind::cells, 3};
     SimulatedMachine::Options machine;
     machine.seed = seed;
     renderByTasks(jobOfText(randomScene(seed)), host, machine, [&](SimulatedMachine& m) {
@@ -67,11 +73,14 @@ TEST(Messages, DecodedAndEncodedAgainTheyHaveTheSameBytes) {
     }
     ASSERT_TRUE(again == packet);
   }
-  for (std::size_t tag : {PositionIn<Forget, AllMessages>::value, PositionIn<Items, AllMessages>::value,
-                          PositionIn<Configure, AllMessages>::value, PositionIn<Ready, AllMessages>::value,
-                          PositionIn<Report, AllMessages>::value, PositionIn<RayTask, AllMessages>::value,
-                          PositionIn<ShadowTask, AllMessages>::value, PositionIn<Expect, AllMessages>::value,
-                          PositionIn<Answer, AllMessages>::value})
+  for (std::size_t tag :
+       {PositionIn<Forget, AllMessages>::value, PositionIn<Items, AllMessages>::value,
+        PositionIn<Configure, AllMessages>::value, PositionIn<Ready, AllMessages>::value,
+        PositionIn<Report, AllMessages>::value, PositionIn<RayTask, AllMessages>::value,
+        PositionIn<ShadowTask, AllMessages>::value, PositionIn<Expect, AllMessages>::value,
+        PositionIn<Answer, AllMessages>::value, PositionIn<PyramidWanted, AllMessages>::value,
+        PositionIn<PyramidWork, AllMessages>::value, PositionIn<CellWanted, AllMessages>::value,
+        PositionIn<CellItems, AllMessages>::value})
     EXPECT_TRUE(seen.contains(tag)) << "message " << tag << " never travelled";
 }
 
@@ -123,6 +132,7 @@ TEST(Messages, DamagedPacketsDoNoHarm) {
     damaged.push_back(std::move(packet));
   }
   feed<VoxelTask>(damaged);
+  feed<PyramidTask>(damaged);
   feed<ShadeTask>(damaged);
 }
 
@@ -136,6 +146,7 @@ TEST(Messages, WorkBeforeTheFirstConfigureIsNotDone) {
     packet.insert(packet.begin(), std::byte{kWireVersion});
     packet.insert(packet.end(), original.begin() + kHead, original.end());
     feed<VoxelTask>({packet});
+    feed<PyramidTask>({packet});
     feed<ShadeTask>({packet});
   }
 }
