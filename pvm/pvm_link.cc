@@ -35,7 +35,7 @@ constexpr std::size_t kLongestLine = 4096;         // of a task's output; a long
 
 // Tags.  Whoever is enrolled can send any of them, so notices count only when they come from a daemon or from libpvm.
 constexpr int kPacket = 1, kKnock = 2, kComeIn = 3, kHello = 4;
-constexpr int kTaskExit = 11, kRouteGone = 12, kHostGone = 13, kHostJoined = 14, kOutput = 15;
+constexpr int kTaskExit = 11, kRoute = 12, kHostGone = 13, kHostJoined = 14, kOutput = 15;
 
 int number(TaskId task) { return static_cast<int>(task); }
 
@@ -106,6 +106,7 @@ PvmLink::PvmLink(std::function<Command(Role)> command) : command_(std::move(comm
   pvm_setopt(PvmFragSize, kFragmentBytes);
   pvm_setopt(PvmRoute, PvmAllowDirect);  // use direct routes that stand, ask for none
   hardenSockets();
+  check(pvm_notify(PvmRouteAdd, kRoute, -1, nullptr), "notify");
   if (parent_ != kNobody) return;
 
   // The output of spawned tasks comes to this task as messages.  Not by pvm_catchout: then pvm_exit waits for
@@ -149,17 +150,23 @@ bool PvmLink::connected(TaskId peer) const {
   return found != peers_.end() && found->second.direct;
 }
 
+bool PvmLink::leaves(TaskId peer) const {
+  const auto found = peers_.find(peer);
+  return found != peers_.end() && (found->second.dead || found->second.ending != 0);
+}
+
 void PvmLink::connect(std::span<const TaskId> peers) {
+  takeRouteNotices();
   for (const TaskId peer : peers) {
-    if (self_ < peer && !connected(peer)) sendEmpty(peer, kKnock);
+    if (self_ < peer && !connected(peer) && !leaves(peer)) sendEmpty(peer, kKnock);
   }
 }
 
 void PvmLink::send(TaskId to, std::span<const std::byte> packet) {
   if (packet.size() > static_cast<std::size_t>(kLargestPacket))
     throw std::length_error("packet of more than 1 GiB");
+  if (!waitForRoom(to)) return;
   Peer& peer = peers_[to];
-  if (peer.dead) return;
   std::uint32_t place = peer.sent++;
   check(pvm_initsend(PvmDataRaw), "initsend");
   check(pvm_pkuint(&place, 1, 1), "pkuint");
@@ -167,6 +174,32 @@ void PvmLink::send(TaskId to, std::span<const std::byte> packet) {
   char* bytes = const_cast<char*>(reinterpret_cast<const char*>(packet.data()));
   check(pvm_pkbyte(bytes, static_cast<int>(packet.size()), 1), "pkbyte");
   check(pvm_send(number(to), kPacket), "send");
+}
+
+void PvmLink::takeRouteNotices() {
+  while (check(pvm_nrecv(number(self_), kRoute), "nrecv") > 0) takeNotice(kRoute);
+}
+
+// False: the peer leaves, nothing is to be sent.  pvm_nrecv takes in what has come, so two tasks that send to each
+// other do not wait for ever.
+bool PvmLink::waitForRoom(TaskId task) {
+  for (;;) {
+    takeRouteNotices();
+    if (leaves(task)) return false;
+    const int route = peers_[task].route;
+    if (route < 0) return true;
+    std::vector<pollfd> sockets{{route, POLLOUT | POLLRDHUP, 0}};
+    ::poll(sockets.data(), 1, 0);
+    if ((sockets[0].revents & ~POLLOUT) != 0) {
+      showsSignOfDeath(task);
+      return false;
+    }
+    if (sockets[0].revents != 0) return true;
+    int* descriptors = nullptr;
+    const int count = check(pvm_getfds(&descriptors), "getfds");
+    for (int i = 0; i < count; ++i) sockets.push_back({descriptors[i], POLLIN, 0});
+    ::poll(sockets.data(), sockets.size(), -1);
+  }
 }
 
 std::optional<LinkEvent> PvmLink::poll() {
@@ -292,7 +325,7 @@ void PvmLink::take(int buffer) {
     case kHello:
       return takeHello(TaskId{sender}, tag);
     case kTaskExit:
-    case kRouteGone:
+    case kRoute:
     case kHostGone:
     case kHostJoined:
       if (told) return takeNotice(tag);
@@ -367,7 +400,7 @@ void PvmLink::routeStands(TaskId task) {
   peer.direct = true;
   hardenSockets();
   int tid = number(task);
-  check(pvm_notify(PvmRouteDelete, kRouteGone, 1, &tid), "notify");
+  check(pvm_notify(PvmRouteDelete, kRoute, 1, &tid), "notify");
 }
 
 void PvmLink::takeNotice(int tag) {
@@ -388,13 +421,17 @@ void PvmLink::takeNotice(int tag) {
     events_.push_back({LinkEvent::Kind::hostExit, kNobody, host->second, {}});
     hosts_.erase(host);
     silentHosts_.erase(id);
+  } else if (tag == kRoute) {
+    int descriptor = -1;  // none: the route is gone
+    pvm_upkint(&descriptor, 1, 1);
+    Peer& peer = peers_[TaskId{id}];
+    peer.route = descriptor;
+    if (descriptor >= 0) return;
+    peer.direct = false;
+    showsSignOfDeath(TaskId{id});
   } else if (const auto peer = peers_.find(TaskId{id}); peer != peers_.end()) {
-    if (tag == kRouteGone)
-      peer->second.direct = false;
-    else {
-      peer->second.exited = true;
-      silentHosts_.erase(pvm_tidtohost(id));  // its daemon lives
-    }
+    peer->second.exited = true;
+    silentHosts_.erase(pvm_tidtohost(id));  // its daemon lives
     showsSignOfDeath(TaskId{id});
   }
 }
@@ -412,8 +449,14 @@ void PvmLink::showsSignOfDeath(TaskId task) {
 
 void PvmLink::buryThoseWhoseTimeIsOver() {
   const double time = now();
-  for (auto& [task, peer] : peers_) {
-    if (!peer.dead && peer.ending != 0 && time - peer.ending > kSettleSeconds) bury(task);
+  std::set<int> machines;
+  for (const auto& [task, peer] : peers_) {
+    if (!peer.dead && peer.ending != 0 && time - peer.ending > kSettleSeconds)
+      machines.insert(pvm_tidtohost(number(task)));
+  }
+  // Who leaves the same machine a moment later is told with it: one recovery instead of several.
+  for (const auto& [task, peer] : peers_) {
+    if (!peer.dead && peer.ending != 0 && machines.contains(pvm_tidtohost(number(task)))) bury(task);
   }
 }
 

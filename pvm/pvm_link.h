@@ -8,6 +8,10 @@
 // Deaths.  PVM tells of a task's exit in milliseconds, of a vanished machine after three minutes; the end of a direct
 // route is told at once, or after 10 s when a cable is out.  A death is told when both have come, or one a while ago.
 //
+// When a route ends while pvm_send is in it, libpvm gives the packet to the daemon; and a daemon that has a packet for a
+// machine that is gone holds back what it has for all others, up to 13 s at a time, for three minutes.  So send()
+// looks at the route first, and to a peer with a sign of death nothing is sent.
+//
 // send() blocks while a peer with a direct route does not read (its flow control); one packet is at most 1 GiB.
 // LinkLost: the daemon of this machine is gone, and with it all that this task could do.  Times in seconds.
 // Source: manual pages of PVM 3.4.6 and measurements with it.
@@ -66,6 +70,7 @@ class PvmLink final : public Machine {
     bool watched = false;                  // the owner of this link wants to know of it
     bool child = false;                    // spawned here
     bool direct = false;                   // a direct route stands
+    int route = -1;                        // its socket, which is libpvm's; -1: none
     bool exited = false;                   // PVM told of its exit
     bool dead = false;                     // nothing more is taken from it
     double ending = 0;                     // when the first sign of its death came; 0: none
@@ -78,6 +83,9 @@ class PvmLink final : public Machine {
   void takeHello(TaskId from, int tag);
   void takeNotice(int tag);
   void takeOutput();
+  void takeRouteNotices();
+  bool leaves(TaskId peer) const;  // dead, or with a sign of it: nothing is sent to it
+  bool waitForRoom(TaskId task);
   void askForExit(TaskId task);
   void sendEmpty(TaskId to, int tag);
   void openRoute(TaskId peer);
