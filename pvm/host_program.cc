@@ -21,6 +21,7 @@ struct HostProgramOptions {
   std::optional<std::uint32_t> pyramids;
   std::optional<std::string> horizon, shadows, shading;
   std::optional<double> cacheMegabytes;
+  double patience = HostOptions{}.killAfter;
 };
 
 // A schedule is a preset; what is said in detail counts more.
@@ -113,6 +114,10 @@ void declareHostOptions(CLI::App& app, HostProgramOptions& o) {
   app.add_option("--window", o.host.window, "samples on their way at a time")
       ->check(CLI::Range(1, 1 << 24))
       ->group(tasks);
+  app.add_option("--patience", o.patience,
+                 "seconds of silence after which a task counts as hanging (default: 30)")
+      ->check(CLI::Range(0.1, 1e6))
+      ->group(tasks);
   app.add_flag("--mixed", o.host.mixedArithmetic, "go on when hosts compute different bits")->group(tasks);
 }
 
@@ -196,6 +201,8 @@ int run(HostProgramOptions& options) {
     std::fprintf(stderr, "rayshade-host: warning: host %s did not join\n", host.c_str());
   PvmLink link;
   options.host.seed = options.render.seed;
+  options.host.killAfter = options.patience;
+  options.host.pingAfter = options.patience / 3;
   settleSchedule(options, static_cast<std::uint32_t>(link.hosts().size()));
   HostTask host(
       link, [&](SceneSink& sink) { parseScene(again, sink); }, survey, head.setting, options.host);

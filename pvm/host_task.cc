@@ -2,6 +2,7 @@
 #include "pvm/host_task.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace rayshade {
 namespace {
@@ -47,8 +48,9 @@ void HostTask::postAll(const M& message) {
     if (slave.task != kNobody) outbox_.post(slave.task, message);
 }
 
-void HostTask::lost(Slave& slave) {
+void HostTask::lost(Slave& slave, const std::string& how) {
   if (slave.task == kNobody) return;
+  lastDeath_ = std::string(programName(slave.placement.role)) + " on " + slave.placement.host + ": " + how;
   byTask_.erase(static_cast<std::int32_t>(slave.task));
   slave.task = kNobody;
   slave.hasItems = false;
@@ -66,7 +68,7 @@ bool HostTask::startMissing() {
     missing = true;
     if (slave.summary.task != kNobody && ++successions_ > options_.mostSuccessions)
       throw HostError("tasks keep dying: given up after " + std::to_string(options_.mostSuccessions) +
-                      " successors");
+                      " successors; the last to die was " + lastDeath_);
     const std::vector<HostInfo> hosts = machine_.hosts();
     const auto mapped = mapProcesses(hosts, options_.wishes);
     const bool stands = std::any_of(hosts.begin(), hosts.end(),
@@ -216,11 +218,11 @@ void HostTask::handle(const LinkEvent& event) {
       }
       break;
     case LinkEvent::Kind::taskExit:
-      if (Slave* slave = find(event.task)) lost(*slave);
+      if (Slave* slave = find(event.task)) lost(*slave, "its process ended, or its host is gone");
       break;
     case LinkEvent::Kind::hostExit:
       for (Slave& slave : slaves_)
-        if (slave.placement.host == event.host) lost(slave);
+        if (slave.placement.host == event.host) lost(slave, "its host left the virtual machine");
       break;
     case LinkEvent::Kind::hostJoined:
       break;  // it is there for the next successor
@@ -249,7 +251,7 @@ void HostTask::lookAfterSilent() {
     }
     if (silence > most && slave.asked) {
       machine_.kill(slave.task);
-      lost(slave);
+      lost(slave, "no answer for " + std::to_string(std::lround(silence)) + " s");
     }
   }
 }

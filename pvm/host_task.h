@@ -122,7 +122,7 @@ class HostTask {
   void takeEvents(double patience);
   void lookAfterSilent();
   void sendWeights();
-  void lost(Slave& slave);
+  void lost(Slave& slave, const std::string& how);
   Slave* find(TaskId task);
   template <class M>
   void postAll(const M& message);
@@ -143,6 +143,7 @@ class HostTask {
   Survey survey_;
   bool someoneDied_ = false;
   int successions_ = 0;
+  std::string lastDeath_;  // who, where and how
 
   const View* view_ = nullptr;  // of the frame that is rendered
   const PictureSpec* picture_ = nullptr;
