@@ -24,7 +24,7 @@
 namespace rayshade {
 namespace {
 
-constexpr int kFragmentBytes = 32768;       // three times the packets per second of PVM's own 4080
+constexpr int kFragmentBytes = 65536;  // a packet in one write; PVM's own 4080 costs two thirds of the speed
 constexpr int kSocketBytes = 512 * 1024;    // as far as the system allows
 constexpr int kSilenceSeconds = 10;         // a machine that acknowledges nothing for so long is dead
 constexpr double kSettleSeconds = 0.5;      // between the first sign of a death and its telling

@@ -157,7 +157,7 @@ TEST_F(Pvm, AKilledTaskIsReplacedAndThePictureIsTheSame) {
 
 TEST_F(Pvm, AStoppedTaskIsReplacedToo) {
   const std::string expected = sequential(kLong, "sequential.pfm");
-  const auto host = startHost(std::string("--voxels 3 --shades 1 ") + kLong, "picture.pfm");
+  const auto host = startHost(std::string("--patience 3 --voxels 3 --shades 1 ") + kLong, "picture.pfm");
   const auto pid = busyTask("rayshade-voxel-trace");
   ASSERT_TRUE(pid.has_value());
   kill(*pid, SIGSTOP);
@@ -253,10 +253,11 @@ TEST_F(Pvm, AnOrdinaryUserCanDoItToo) {
     ASSERT_EQ(chown(path.c_str(), kOrdinaryUser, kOrdinaryUser), 0);
   const std::string id = std::to_string(kOrdinaryUser);
   const std::string become = "setpriv --reuid " + id + " --regid " + id + " --clear-groups ";
-  if (Program(words(become + "test -x " + programDirectory() + "/rayshade-host"), scratch("probe"))
-          .wait(10)
-          .status != 0)
-    GTEST_SKIP() << "an ordinary user cannot reach " << programDirectory();
+  for (const std::string& reach :
+       {"-x " + programDirectory() + "/rayshade-host", "-w " + directory + "/pvm"}) {
+    if (Program(words(become + "test " + reach), scratch("probe")).wait(10).status != 0)
+      GTEST_SKIP() << "an ordinary user cannot reach " << reach.substr(3);
+  }
   const std::string expected = sequential("-S 1 -R 60 60 scenes/gallery/chess.ray", "sequential.png");
   Program host(words(become + programDirectory() +
                      "/rayshade-host -q --voxels 2 -S 1 -R 60 60 scenes/gallery/chess.ray -O " + directory +
@@ -268,45 +269,69 @@ TEST_F(Pvm, AnOrdinaryUserCanDoItToo) {
   EXPECT_TRUE(waitFor([&] { return processesWith("PVM_TMP=" + directory + "/pvm").empty(); }, 10));
 }
 
+// Pretend hosts NAME1, NAME2 ... and PVM on them.
+class Lab {
+ public:
+  Lab(const std::string& name, const std::string& scratch) : name_(name), scratch_(scratch) {}
+  Lab(const Lab&) = delete;
+  Lab& operator=(const Lab&) = delete;
+  ~Lab() { run("down"); }
+
+  Finished run(const std::string& command) { return begin(command)->wait(60); }
+  std::unique_ptr<Program> begin(const std::string& command) const {
+    std::istringstream in("hosts/lab " + command);
+    return std::make_unique<Program>(std::vector<std::string>{std::istream_iterator<std::string>(in), {}},
+                                     scratch_, Program::Environment{{"RAYSHADE_LAB", name_}});
+  }
+  std::string host(int number) const { return name_ + std::to_string(number); }
+  // A task of that host has work.
+  bool busy(int number) const {
+    for (const pid_t pid : processesWith("PVM_TMP=/tmp/rayshade-" + name_ + "/" + host(number)))
+      if (cpuSecondsOf(pid).value_or(0) > 0.1) return true;
+    return false;
+  }
+
+ private:
+  std::string name_, scratch_;
+};
+
 TEST_F(Pvm, SeveralHostsAndTheCrashOfOne) {
   if (geteuid() != 0) GTEST_SKIP() << "pretend hosts need root";
-  const Program::Environment lab{{"RAYSHADE_LAB", "rt" + std::to_string(getpid() % 1000)}};
-  const std::string name = lab.front().second;
-  auto run = [&](const std::string& command, double seconds = 60) {
-    return Program(words("hosts/lab " + command), scratch("lab"), lab).wait(seconds);
-  };
-  struct Down {
-    std::function<void()> down;
-    ~Down() { down(); }
-  } down{[&] { run("down"); }};
-  if (const Finished up = run("up 3"); up.status != 0)
-    GTEST_SKIP() << "no network namespaces here: " << up.errors;
-  const Finished started = run("start ep=" + programDirectory());
-  ASSERT_EQ(started.status, 0) << started.errors << started.output;
   const std::string expected = sequential(kLong, "sequential.pfm");
-  auto host = [&](const std::string& picture, const std::string& scene) {
-    return std::make_unique<Program>(
-        words("hosts/lab run " + name + "1 " + programDirectory() + "/rayshade-host --voxels 6 --shades 3 " +
-              scene + " -O " + scratch(picture)),
-        scratch("host"), lab);
-  };
-  const Finished calm = host("calm.pfm", kLong)->wait(kPatience);
-  ASSERT_EQ(calm.status, 0) << calm.errors;
-  EXPECT_NE(calm.errors.find(name + "2"), std::string::npos) << "nothing ran on the second host\n"
-                                                             << calm.errors;
-  EXPECT_TRUE(readText(scratch("calm.pfm")) == expected) << "the pictures differ";
-
-  // Long enough to be in the middle of it after the time that the other took as a whole.
-  const std::string longer = "-R 100 75 -S 8 -T 0 0 0 scenes/gallery/glass-and-mirrors.ray";
-  const std::string expectedLonger = sequential(longer, "longer.pfm");
-  const auto unlucky = host("picture.pfm", longer);
-  std::this_thread::sleep_for(std::chrono::milliseconds(static_cast<int>(500 * calm.seconds)));
-  ASSERT_TRUE(unlucky->running()) << unlucky->wait(kPatience).errors;
-  ASSERT_EQ(run("crash " + name + "2").status, 0);
-  const Finished done = unlucky->wait(kPatience);
-  EXPECT_EQ(done.status, 0) << done.errors;
-  EXPECT_NE(done.errors.find("died and were replaced"), std::string::npos) << done.errors;
-  EXPECT_TRUE(readText(scratch("picture.pfm")) == expectedLonger) << "the pictures differ";
+  // A packet that the crash catches in its sending stays in PVM's daemon and delays all others for minutes (see
+  // pvm_link.h).  That is rare: of a few crashes one at least is got over quickly.
+  constexpr int kCrashes = 3;
+  constexpr double kQuickly = 45;  // seconds for a render that takes 5 undisturbed
+  bool quick = false;
+  for (int crash = 0; crash < kCrashes && !quick; ++crash) {
+    Lab lab("rt" + std::to_string(getpid() % 1000), scratch("lab"));
+    if (const Finished up = lab.run("up 3"); up.status != 0)
+      GTEST_SKIP() << "no network namespaces here: " << up.errors;
+    const Finished started = lab.run("start ep=" + programDirectory());
+    ASSERT_EQ(started.status, 0) << started.errors << started.output;
+    const auto render = [&](const std::string& picture) {
+      return lab.begin("run " + lab.host(1) + " " + programDirectory() +
+                       "/rayshade-host --voxels 6 --shades 3 " + kLong + " -O " + scratch(picture));
+    };
+    if (crash == 0) {
+      const Finished calm = render("calm.pfm")->wait(kPatience);
+      ASSERT_EQ(calm.status, 0) << calm.errors;
+      EXPECT_NE(calm.errors.find(lab.host(2)), std::string::npos) << "nothing ran on the second host\n"
+                                                                  << calm.errors;
+      EXPECT_TRUE(readText(scratch("calm.pfm")) == expected) << "the pictures differ";
+    }
+    const auto unlucky = render("picture.pfm");
+    ASSERT_TRUE(waitFor([&] { return lab.busy(2); }, 30));
+    ASSERT_TRUE(unlucky->running()) << unlucky->wait(kPatience).errors;
+    ASSERT_EQ(lab.run("crash " + lab.host(2)).status, 0);
+    const Finished done = unlucky->wait(kQuickly);
+    if (!done.inTime) continue;
+    quick = true;
+    EXPECT_EQ(done.status, 0) << done.errors;
+    EXPECT_NE(done.errors.find("3 tasks died and were replaced"), std::string::npos) << done.errors;
+    EXPECT_TRUE(readText(scratch("picture.pfm")) == expected) << "the pictures differ";
+  }
+  EXPECT_TRUE(quick) << "no crash was got over within " << kQuickly << " s";
 }
 
 }  // namespace

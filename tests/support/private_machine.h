@@ -14,6 +14,7 @@
 #include <string>
 
 #include "pvm/virtual_machine.h"
+#include "tests/support/scratch_directory.h"
 
 namespace rayshade {
 
@@ -23,27 +24,22 @@ class PrivateMachine {
   static constexpr const char* kImpossible = "pvmd is not installed (Debian: apt-get install pvm)";
 
   PrivateMachine() {
-    std::filesystem::create_directory(directory_);
-    std::filesystem::permissions(directory_, std::filesystem::perms::owner_all);
-    setenv("PVM_TMP", directory_.c_str(), 1);
+    std::filesystem::permissions(directory_.path(), std::filesystem::perms::owner_all);
+    setenv("PVM_TMP", directory_.path().c_str(), 1);
     setenv("PVM_VMID", "test", 1);
     unsetenv("PVMSOCK");
   }
   PrivateMachine(const PrivateMachine&) = delete;
   PrivateMachine& operator=(const PrivateMachine&) = delete;
-  ~PrivateMachine() {
-    halt();
-    std::error_code ignored;
-    std::filesystem::remove_all(directory_, ignored);
-  }
+  ~PrivateMachine() { halt(); }
 
   VirtualMachine& start(const MachineOptions& options = {}) { return machine_.emplace(options); }
   void halt() { machine_.reset(); }
-  const std::string& directory() const { return directory_; }
-  std::string addressFile() const { return directory_ + "/pvmd." + std::to_string(getuid()) + ".test"; }
+  const std::string& directory() const { return directory_.path(); }
+  std::string addressFile() const { return directory_ / "pvmd." + std::to_string(getuid()) + ".test"; }
 
  private:
-  std::string directory_ = "/tmp/rayshade-test-" + std::to_string(getpid());
+  ScratchDirectory directory_{"test"};
   std::optional<VirtualMachine> machine_;
 };
 

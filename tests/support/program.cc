@@ -122,14 +122,4 @@ std::size_t countLines(const std::string& text) {
   return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
 }
 
-ScratchDirectory::ScratchDirectory(const std::string& name)
-    : path_((std::filesystem::temp_directory_path() / ("rayshade-" + name + "-" + std::to_string(getpid())))
-                .string()) {
-  std::filesystem::create_directories(path_);
-}
-ScratchDirectory::~ScratchDirectory() {
-  std::error_code ignored;
-  std::filesystem::remove_all(path_, ignored);
-}
-
 }  // namespace rayshade

@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "tests/support/scratch_directory.h"
+
 namespace rayshade {
 
 struct Finished {
@@ -53,19 +55,5 @@ std::optional<double> cpuSecondsOf(pid_t pid);
 
 std::string readText(const std::string& file);
 std::size_t countLines(const std::string& text);
-
-// A directory that goes away with everything in it.
-class ScratchDirectory {
- public:
-  explicit ScratchDirectory(const std::string& name);
-  ScratchDirectory(const ScratchDirectory&) = delete;
-  ScratchDirectory& operator=(const ScratchDirectory&) = delete;
-  ~ScratchDirectory();
-  const std::string& path() const { return path_; }
-  std::string operator/(const std::string& file) const { return path_ + "/" + file; }
-
- private:
-  std::string path_;
-};
 
 }  // namespace rayshade
