@@ -28,7 +28,7 @@ LIBRARIES := -lpng
 objects = $(patsubst %.cc,$(BUILD)/%.o,$(1))
 find_sources = $(sort $(shell find $(1) -name '*.cc'))
 
-core := $(call objects,$(filter-out rayshade/main.cc,$(call find_sources,rayshade)))
+core := $(call objects,$(filter-out rayshade/main.cc rayshade/error_main.cc,$(call find_sources,rayshade)))
 spd := $(call objects,$(filter-out scenes/spd/main.cc,$(call find_sources,scenes/spd)))
 pvm_door := $(call objects,pvm/pvm_link.cc pvm/virtual_machine.cc)
 pvm_programs := $(call objects,pvm/main.cc pvm/host_program.cc)
@@ -40,7 +40,7 @@ tests := $(filter-out $(pvm_tests) $(link_test),$(call objects,$(call find_sourc
 benches := $(patsubst tests/bench/%.cc,$(BIN)/bench/%,$(call find_sources,tests/bench))
 
 roles := host voxel-trace pyramid-trace shade
-programs := $(BIN)/rayshade $(BIN)/spd $(roles:%=$(BIN)/rayshade-%)
+programs := $(BIN)/rayshade $(BIN)/rayshade-error $(BIN)/spd $(roles:%=$(BIN)/rayshade-%)
 test_programs := $(BIN)/rayshade-tests $(BIN)/link-tests $(BIN)/pvm-tests
 
 .PHONY: all demo check test install fuzz bench format clean packages
@@ -60,6 +60,8 @@ $(BUILD)/lib%.a:
 link = @mkdir -p $(@D) && echo "link $@" && $(CXX) $(FLAGS) $(EXTRA_FLAGS) $(filter %.o,$^) $(filter %.a,$^) $(1) $(LIBRARIES) -o $@
 
 $(BIN)/rayshade: $(BUILD)/rayshade/main.o $(BUILD)/libcore.a
+	$(call link)
+$(BIN)/rayshade-error: $(BUILD)/rayshade/error_main.o $(BUILD)/libcore.a
 	$(call link)
 $(BIN)/spd: $(BUILD)/scenes/spd/main.o $(BUILD)/libspd.a
 	$(call link)
