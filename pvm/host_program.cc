@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pvm/host_program.h"
 
+#include <unistd.h>
+
 #include <cinttypes>
+#include <fstream>
 
 #include "pvm/host_task.h"
+#include "pvm/plan.h"
 #include "pvm/pvm_link.h"
+#include "pvm/task_table.h"
 #include "pvm/virtual_machine.h"
 #include "rayshade/interruption.h"
 #include "rayshade/options.h"
@@ -17,6 +22,8 @@ struct HostProgramOptions {
   Options render;
   HostOptions host;
   MachineOptions machine;
+  bool plan = false;
+  std::string tableFile;
   std::string schedule = "data";
   std::optional<std::uint32_t> pyramids;
   std::optional<std::string> horizon, shadows, shading;
@@ -118,6 +125,9 @@ void declareHostOptions(CLI::App& app, HostProgramOptions& o) {
                  "seconds of silence after which a task counts as hanging (default: 30)")
       ->check(CLI::Range(0.1, 1e6))
       ->group(tasks);
+  app.add_flag("--plan", o.plan, "render nothing: print which tasks would run where and why")->group(tasks);
+  app.add_option("--table", o.tableFile, "write what each task did to this file, as tab-separated values")
+      ->group(tasks);
   app.add_flag("--mixed", o.host.mixedArithmetic, "go on when hosts compute different bits")->group(tasks);
 }
 
@@ -163,12 +173,36 @@ void writeTable(std::FILE* to, const HostSummary& s, std::uint64_t pictureSum) {
                "host: %.1f MB in, %.1f MB out; at most %" PRIu64
                " samples on their way; %.3f s start, %.3f s trace; "
                "tasks' CPU %.3f s\n",
-               megabytes(s.traffic.bytesIn), megabytes(s.traffic.bytesOut), s.peakInFlight, s.startSeconds,
-               s.traceSeconds, cpu);
+               megabytes(s.host.report.bytesIn), megabytes(s.host.report.bytesOut), s.peakInFlight,
+               s.startSeconds, s.traceSeconds, cpu);
   if (s.successions > 0)
     std::fprintf(to, "%d tasks died and were replaced, %" PRIu64 " samples issued again, %u epochs\n",
                  s.successions, s.reissued, s.epochs);
   std::fprintf(to, "picture checksum %016" PRIx64 "\n", pictureSum);
+}
+
+void writeTaskTable(const std::string& file, const HostSummary& summary, std::uint64_t pictureSum) {
+  std::ofstream out(file, std::ios::binary);
+  out << taskTable(summary, pictureSum);
+  if (!out.flush()) throw std::runtime_error(file + ": cannot be written");
+}
+
+// The hosts that there would be; asks a virtual machine that runs, but changes and starts nothing.
+std::vector<HostInfo> plannedHosts(const MachineOptions& options) {
+  std::vector<HostLine> lines;
+  if (!options.hostFile.empty()) {
+    std::ifstream in(options.hostFile);
+    if (!in) throw MachineError(options.hostFile + ": the host file cannot be read");
+    lines = readHostFile(in);
+  }
+  std::vector<HostInfo> running;
+  if (lookForMachine() == MachineState::alive) {
+    const VirtualMachine machine({});
+    running = PvmLink().hosts();
+  }
+  char name[256] = "localhost";
+  if (!lines.empty()) gethostname(name, sizeof name - 1);
+  return hostsAfterJoining(running, lines, isThisMachine, name);
 }
 
 int run(HostProgramOptions& options) {
@@ -179,6 +213,12 @@ int run(HostProgramOptions& options) {
   Survey survey = surveySink.survey();
   if (survey.objects == 0)
     throw SceneError(sceneName(options.render) + ": error: there is nothing to be rendered");
+  if (options.plan) {
+    const std::vector<HostInfo> hosts = plannedHosts(options.machine);
+    settleSchedule(options, static_cast<std::uint32_t>(hosts.size()));
+    std::fputs(describePlan(hosts, options.host, survey, head.setting).c_str(), stdout);
+    return 0;
+  }
   const View view = *viewOf(head.camera, head.picture);
   const PixelArea area = *pixelArea(head.picture);
   const std::string outputFile = chooseOutput(options.render, head);
@@ -227,6 +267,7 @@ int run(HostProgramOptions& options) {
     if (frame == first + head.picture.frames - 1) {
       const HostSummary summary = host.finish();
       if (!quiet) writeTable(stderr, summary, pictureSum);
+      if (!options.tableFile.empty()) writeTaskTable(options.tableFile, summary, pictureSum);
     }
   }
   return 0;

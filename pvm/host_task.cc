@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pvm/division.h"
+#include "pvm/task_desk.h"
+
 namespace rayshade {
 namespace {
 
@@ -30,6 +33,8 @@ HostTask::HostTask(Machine& machine, SceneReader scene, const Survey& survey, co
 void HostTask::placeTasks() {
   const std::vector<HostInfo> hosts = machine_.hosts();
   if (hosts.empty()) throw HostError("the virtual machine has no hosts");
+  summary_.host.placement = {Role::host, 0, hosts[0].name, {}};
+  summary_.host.task = machine_.self();
   for (const Placement& placement : mapProcesses(hosts, options_.wishes)) {
     Slave slave;
     slave.placement = placement;
@@ -371,18 +376,9 @@ void HostTask::renderFrame(const View& view, const PictureSpec& picture, std::in
   const auto voxelTasks = static_cast<std::uint32_t>(std::count_if(
       slaves_.begin(), slaves_.end(), [](const Slave& s) { return s.placement.role == Role::voxelTrace; }));
   directory_.clusters = std::max(1u, options_.wishes.clusters);
-  const std::uint32_t perCluster = voxelTasks / directory_.clusters;
-  const std::uint32_t voxels = perCluster * std::max(1u, options_.voxelsPerTask);
-  // A cell is what is fetched at a time: small enough to be a part, large enough to be worth a message.
-  constexpr std::uint64_t kObjectsPerCell = 2048;
-  const auto bySize =
-      static_cast<std::uint32_t>(std::min<std::uint64_t>(survey_.objects / kObjectsPerCell, 1 << 16));
-  const bool fetches = !directory_.pyramidTasks.empty() || options_.wishes.pyramids > 0 ||
-                       options_.policy.shadows != ShadowPolicy::forward;
-  const std::uint32_t cells = options_.cells > 0 ? options_.cells : fetches ? bySize : voxels;
-  tree_ = buildBinTree(survey_.world, {.voxels = voxels, .cells = std::max(cells, voxels)}, survey_.density);
-  directory_.voxels.clear();
-  for (std::uint32_t voxel = 0; voxel < voxels; ++voxel) directory_.voxels.push_back(voxel % perCluster);
+  Division division = divideSpace(survey_, options_, voxelTasks / directory_.clusters);
+  tree_ = std::move(division.tree);
+  directory_.voxels = std::move(division.owners);
   for (Slave& slave : slaves_) slave.hasItems = false;
 
   Sampler sampler(picture, options_.seed, static_cast<std::uint32_t>(frame));
@@ -432,7 +428,7 @@ HostSummary HostTask::finish() {
     summary_.tasks.push_back(slave.summary);
   }
   summary_.successions = successions_;
-  summary_.traffic = outbox_.traffic;
+  summary_.host.report = reportOf(outbox_.traffic);
   return summary_;
 }
 

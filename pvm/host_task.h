@@ -54,14 +54,14 @@ struct TaskSummary {
 };
 
 struct HostSummary {
-  std::vector<TaskSummary> tasks;
-  std::uint64_t objects = 0;  // of the world
-  int successions = 0;        // tasks that died and were replaced
+  TaskSummary host;                // its traffic, CPU time and memory
+  std::vector<TaskSummary> tasks;  // the others
+  std::uint64_t objects = 0;       // of the world
+  int successions = 0;             // tasks that died and were replaced
   std::uint32_t epochs = 0;
   std::uint64_t peakInFlight = 0;
   std::uint64_t reissued = 0;                                    // samples issued again
   double surveySeconds = 0, startSeconds = 0, traceSeconds = 0;  // start: shipping and building
-  Traffic traffic;
 };
 
 class HostTask {

@@ -28,6 +28,9 @@ struct Placement {
   std::string reason;
 };
 
+// Work of a task of this role in parts of a voxel-trace task's, before anything is known of the scene.
+double expectedWork(Role role);
+
 // Requires at least one host.
 std::vector<Placement> mapProcesses(const std::vector<HostInfo>& hosts, const Wishes& wishes);
 

@@ -19,9 +19,8 @@ void TaskDesk::flush() {
   outbox.flush();
 }
 
-Report TaskDesk::report() const {
+Report reportOf(const Traffic& t) {
   Report report;
-  const Traffic& t = outbox.traffic;
   report.messagesIn = t.messagesIn;
   report.messagesOut = t.messagesOut;
   report.packetsIn = t.packetsIn;
@@ -30,9 +29,6 @@ Report TaskDesk::report() const {
   report.bytesOut = t.bytesOut;
   report.refused = t.refused;
   report.stale = t.stale;
-  report.peakQueue = peakQueue;
-  report.idleSeconds = idleSeconds;
-  report.busySeconds = link.now() - born_ - idleSeconds;
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   auto seconds = [](const timeval& t) {
@@ -40,6 +36,14 @@ Report TaskDesk::report() const {
   };
   report.cpuSeconds = seconds(usage.ru_utime) + seconds(usage.ru_stime);
   report.peakMemory = static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+  return report;
+}
+
+Report TaskDesk::report() const {
+  Report report = reportOf(outbox.traffic);
+  report.peakQueue = peakQueue;
+  report.idleSeconds = idleSeconds;
+  report.busySeconds = link.now() - born_ - idleSeconds;
   return report;
 }
 

@@ -6,6 +6,9 @@
 
 namespace rayshade {
 
+// What a process knows of itself: traffic, CPU time, memory.
+Report reportOf(const Traffic& traffic);
+
 class TaskDesk {
  public:
   explicit TaskDesk(Link& link) : link(link), outbox(link), born_(link.now()) {}

@@ -108,29 +108,6 @@ bool usableDirectory(const std::string& directory) {
          access(directory.c_str(), W_OK | X_OK) == 0;
 }
 
-// Of the host file's names the one that means this machine: by its name or by an address that it has.
-bool isThisMachine(const std::string& name) {
-  char own[256] = {};
-  gethostname(own, sizeof own - 1);
-  if (name == own) return true;
-  addrinfo hints{}, *found = nullptr;
-  hints.ai_family = AF_INET;  // PVM knows no other
-  hints.ai_socktype = SOCK_STREAM;
-  if (getaddrinfo(name.c_str(), nullptr, &hints, &found) != 0) return false;
-  const std::unique_ptr<addrinfo, void (*)(addrinfo*)> keepFound(found, freeaddrinfo);
-  ifaddrs* interfaces = nullptr;
-  if (getifaddrs(&interfaces) != 0) return false;
-  const std::unique_ptr<ifaddrs, void (*)(ifaddrs*)> keepInterfaces(interfaces, freeifaddrs);
-  const auto address = [](const sockaddr* a) {
-    return reinterpret_cast<const sockaddr_in*>(a)->sin_addr.s_addr;
-  };
-  for (const ifaddrs* i = interfaces; i; i = i->ifa_next) {
-    if (i->ifa_addr && i->ifa_addr->sa_family == AF_INET && address(i->ifa_addr) == address(found->ai_addr))
-      return true;
-  }
-  return false;
-}
-
 std::string whyHostFailed(const std::string& host, int code) {
   switch (code) {
     case PvmNoHost:
@@ -214,6 +191,28 @@ std::string inOneLine(std::string text) {
 
 }  // namespace
 
+bool isThisMachine(const std::string& name) {
+  char own[256] = {};
+  gethostname(own, sizeof own - 1);
+  if (name == own) return true;
+  addrinfo hints{}, *found = nullptr;
+  hints.ai_family = AF_INET;  // PVM knows no other
+  hints.ai_socktype = SOCK_STREAM;
+  if (getaddrinfo(name.c_str(), nullptr, &hints, &found) != 0) return false;
+  const std::unique_ptr<addrinfo, void (*)(addrinfo*)> keepFound(found, freeaddrinfo);
+  ifaddrs* interfaces = nullptr;
+  if (getifaddrs(&interfaces) != 0) return false;
+  const std::unique_ptr<ifaddrs, void (*)(ifaddrs*)> keepInterfaces(interfaces, freeifaddrs);
+  const auto address = [](const sockaddr* a) {
+    return reinterpret_cast<const sockaddr_in*>(a)->sin_addr.s_addr;
+  };
+  for (const ifaddrs* i = interfaces; i; i = i->ifa_next) {
+    if (i->ifa_addr && i->ifa_addr->sa_family == AF_INET && address(i->ifa_addr) == address(found->ai_addr))
+      return true;
+  }
+  return false;
+}
+
 MachineState lookForMachine() {
   if (!environment("PVMSOCK").empty()) return knock(environment("PVMSOCK"));
   const std::string file = pvmFile("pvmd");
@@ -249,24 +248,6 @@ void removeRouteSockets() {
     // The daemon of an added host listens at a socket with the number of its parent, which has ended.
     if (knock(path) == MachineState::stale) unlink(path.c_str());
   }
-}
-
-std::vector<HostLine> readHostFile(std::istream& in) {
-  std::vector<HostLine> hosts;
-  std::string defaults;
-  for (std::string line; std::getline(in, line);) {
-    std::istringstream words(line);
-    std::string name, options;
-    if (!(words >> name) || name[0] == '#') continue;
-    const bool isDefault = name == "*";
-    if (name[0] == '&') continue;  // only options, for a host that somebody may add later
-    for (std::string option; words >> option;) options += (options.empty() ? "" : " ") + option;
-    if (isDefault)
-      defaults = options;
-    else
-      hosts.push_back({name, defaults + (defaults.empty() || options.empty() ? "" : " ") + options});
-  }
-  return hosts;
 }
 
 VirtualMachine::VirtualMachine(const MachineOptions& options) {

@@ -14,10 +14,11 @@
 
 #include <sys/types.h>
 
-#include <istream>
 #include <stdexcept>
 #include <string>
 #include <vector>
+
+#include "pvm/host_file.h"
 
 namespace rayshade {
 
@@ -37,19 +38,15 @@ enum class MachineState {
 // Takes milliseconds and calls nothing of libpvm.
 MachineState lookForMachine();
 
+// Does a name of a host file mean this machine: by its name or by an address that it has?
+bool isThisMachine(const std::string& name);
+
 // The path of the daemon, or "" when PVM is not installed.
 std::string daemonProgram();
 
 // libpvm leaves the names of the sockets at which direct routes were opened; takes away those of this process and of
 // processes that have ended, where nobody listens.
 void removeRouteSockets();
-
-// What a host file wishes: one line of it, with the options of the `*` line before in front of its own.
-struct HostLine {
-  std::string name;
-  std::string options;  // "ep=/build sp=2000"
-};
-std::vector<HostLine> readHostFile(std::istream& in);
 
 struct MachineOptions {
   std::string hostFile;            // "": this machine alone, not reachable from the network

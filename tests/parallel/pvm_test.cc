@@ -107,6 +107,30 @@ class Pvm : public testing::Test {
 // Long enough for somebody to die in the middle of it.
 constexpr const char* kLong = "-R 100 75 -S 3 -T 0 0 0 scenes/gallery/glass-and-mirrors.ray";
 
+TEST_F(Pvm, APlanForHostsThatAreNotThereStartsNothing) {
+  std::ofstream(scratch("hosts")) << "localhost\nno-such-host.invalid sp=2000\n";
+  const Finished done =
+      startHost("--plan --hosts " + scratch("hosts") + " scenes/gallery/chess.ray", "plan.png")
+          ->wait(kPatience);
+  EXPECT_EQ(done.status, 0) << done.errors;
+  EXPECT_NE(done.output.find("voxel-trace 3"), std::string::npos) << done.output;
+  EXPECT_NE(done.output.find("no-such-host.invalid"), std::string::npos) << done.output;
+  EXPECT_TRUE(std::filesystem::is_empty(scratch_ / "pvm"));
+  expectNoPicture("plan.png");
+}
+
+TEST_F(Pvm, TheTableOfTheTasksIsWrittenToAFile) {
+  const Finished done =
+      startHost("--table " + scratch("table.tsv") + " --voxels 2 -q -R 20 15 scenes/gallery/chess.ray",
+                "a.png")
+          ->wait(kPatience);
+  EXPECT_EQ(done.status, 0) << done.errors;
+  EXPECT_EQ(done.errors, "");
+  const std::string table = readText(scratch("table.tsv"));
+  EXPECT_NE(table.find("\nvoxel-trace\t1\tlocalhost\t"), std::string::npos) << table;
+  EXPECT_NE(table.find("# checksum\t"), std::string::npos) << table;
+}
+
 TEST_F(Pvm, PicturesAreThoseOfTheSequentialProgramByteForByte) {
   struct Case {
     const char *scene, *tasks, *picture;

@@ -1,0 +1,170 @@
+// --plan says what would happen; --table says what has happened.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pvm/plan.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <sstream>
+
+#include "pvm/division.h"
+#include "pvm/task_table.h"
+#include "tests/support/random_scene.h"
+#include "tests/support/render_text.h"
+
+namespace rayshade {
+namespace {
+
+bool isHere(const std::string& name) { return name == "here" || name == "localhost"; }
+
+std::vector<HostInfo> joined(const std::string& hostFile, std::vector<HostInfo> running = {}) {
+  std::istringstream in(hostFile);
+  return hostsAfterJoining(std::move(running), readHostFile(in), isHere, "here");
+}
+std::string text(const std::vector<HostInfo>& hosts) {
+  std::string all;
+  for (const HostInfo& h : hosts) all += h.name + ":" + std::to_string(h.speed) + " ";
+  return all;
+}
+
+TEST(Plan, TheOwnMachineIsTheFirstHostWhereverTheFileNamesIt) {
+  EXPECT_EQ(text(joined("")), "here:1000 ");
+  EXPECT_EQ(text(joined("node1\nlocalhost\nnode2\n")), "localhost:1000 node1:1000 node2:1000 ");
+  EXPECT_EQ(text(joined("node1\n")), "here:1000 node1:1000 ");
+}
+
+TEST(Plan, SpeedsComeFromTheHostFile) {
+  EXPECT_EQ(text(joined("* ep=/x sp=500\nhere sp=2000\nnode1\nnode2 sp=3000 wd=/tmp\n")),
+            "here:2000 node1:500 node2:3000 ");
+  EXPECT_EQ(text(joined("node1 sp=0\nnode2 sp=-3\nnode3 sp=fast\nnode4 sp=1000001\n")),
+            "here:1000 node1:1000 node2:1000 node3:1000 node4:1000 ");
+}
+
+TEST(Plan, HostsOfARunningMachineStayAndOthersJoin) {
+  EXPECT_EQ(text(joined("here sp=7\nnode1 sp=7\nnode2 sp=7\n", {{"own", 10}, {"node1", 20}})),
+            "own:10 node1:20 node2:7 ");
+}
+
+struct Surveyed {
+  Survey survey;
+  Setting setting;
+};
+Surveyed surveyOf(const std::string& scene) {
+  SurveySink sink({});
+  const SceneHead head = jobOfText(scene).read(sink);
+  return {sink.survey(), head.setting};
+}
+std::string planOf(const std::string& scene, const std::vector<HostInfo>& hosts, const HostOptions& options) {
+  const Surveyed s = surveyOf(scene);
+  return describePlan(hosts, options, s.survey, s.setting);
+}
+std::vector<std::string> lines(const std::string& text) {
+  std::vector<std::string> all;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) all.push_back(line);
+  return all;
+}
+
+TEST(Plan, NamesEveryTaskWithTheHostAndReasonOfTheMapping) {
+  const std::vector<HostInfo> hosts{{"here", 1000}, {"fast", 3000}, {"slow", 500}};
+  HostOptions options;
+  options.wishes = {.voxels = 7, .pyramids = 3, .shades = 2, .clusters = 1};
+  const std::vector<std::string> plan = lines(planOf(randomScene(1), hosts, options));
+  const std::vector<Placement> placements = mapProcesses(hosts, options.wishes);
+  const auto begin = std::find_if(plan.begin(), plan.end(),
+                                  [](const std::string& line) { return line.starts_with("host 0 "); });
+  ASSERT_GT(plan.end() - begin, static_cast<std::ptrdiff_t>(placements.size()));
+  for (std::size_t i = 0; i < placements.size(); ++i) {
+    const Placement& p = placements[i];
+    const std::string& line = *(begin + 1 + static_cast<std::ptrdiff_t>(i));
+    EXPECT_TRUE(
+        line.starts_with(std::string(programName(p.role)).substr(9) + " " + std::to_string(p.index) + " "))
+        << line;
+    EXPECT_NE(line.find(" " + p.host + " "), std::string::npos) << line;
+    EXPECT_TRUE(line.ends_with(p.reason)) << line;
+  }
+}
+
+TEST(Plan, SaysHowManyObjectsEachVoxelTaskIsExpectedToHold) {
+  HostOptions options;
+  options.wishes.voxels = 2;
+  const std::string plan =
+      planOf("sphere diffuse 1 1 1 1 -5 0 0 sphere diffuse 1 1 1 1 -6 0 0 sphere diffuse 1 1 1 1 6 0 0",
+             {{"here", 1000}}, options);
+  EXPECT_NE(plan.find("~2  voxels"), std::string::npos) << plan;
+  EXPECT_NE(plan.find("~1  voxels"), std::string::npos) << plan;
+}
+
+TEST(Plan, SaysWhatTheSceneAndTheScheduleDoWithoutTasks) {
+  const std::string sphere = "sphere diffuse 1 1 1 1 0 0 0 ";
+  HostOptions data;
+  data.wishes.voxels = 2;
+  auto plan = [&](const std::string& scene, const HostOptions& o) {
+    return planOf(scene, {{"here", 1000}}, o);
+  };
+  EXPECT_NE(plan(sphere, data).find("no pyramid tasks"), std::string::npos);
+  EXPECT_EQ(plan(sphere, data).find("pyramid-trace"), std::string::npos);
+  HostOptions hybrid = data;
+  hybrid.wishes.pyramids = 1;
+  EXPECT_EQ(plan(sphere, hybrid).find("no pyramid tasks"), std::string::npos);
+  EXPECT_NE(plan("light 1 point 0 0 9 noshadow " + sphere, data).find("no light casts shadows"),
+            std::string::npos);
+  EXPECT_NE(plan("light 1 area 0 0 9 1 0 9 2 0 1 9 2 light 1 point 0 0 9 " + sphere, data)
+                .find("to 2 lights, 1 of them areas"),
+            std::string::npos)
+      << plan("light 1 area 0 0 9 1 0 9 2 0 1 9 2 light 1 point 0 0 9 " + sphere, data);
+}
+
+TEST(Division, EveryVoxelHasAnOwnerEvenWhenMoreAreWishedThanTreesMayHave) {
+  Survey survey = surveyOf(randomScene(2)).survey;
+  HostOptions options;
+  options.voxelsPerTask = 64;
+  for (std::uint32_t tasks : {1u, 3u, 4096u}) {
+    const Division division = divideSpace(survey, options, tasks);
+    ASSERT_EQ(division.owners.size(), voxelCount(division.tree));
+    EXPECT_EQ(*std::max_element(division.owners.begin(), division.owners.end()), tasks - 1);
+  }
+}
+
+// The table as a map from column to values, by the names in its first line.
+std::map<std::string, std::vector<std::string>> columnsOf(const std::string& table) {
+  std::vector<std::string> names;
+  std::map<std::string, std::vector<std::string>> columns;
+  for (const std::string& line : lines(table)) {
+    if (line.starts_with("#")) continue;
+    std::vector<std::string> fields;
+    std::istringstream in(line);
+    for (std::string field; std::getline(in, field, '\t');) fields.push_back(field);
+    if (names.empty()) {
+      names = fields;
+      continue;
+    }
+    EXPECT_EQ(fields.size(), names.size()) << line;
+    for (std::size_t i = 0; i < std::min(fields.size(), names.size()); ++i)
+      columns[names[i]].push_back(fields[i]);
+  }
+  return columns;
+}
+
+TEST(TaskTable, HasALineForEveryTaskTheHostFirst) {
+  HostOptions options;
+  options.wishes = {.voxels = 3, .pyramids = 2, .shades = 1, .clusters = 1};
+  const RenderedByTasks done = renderByTasks(jobOfText(randomScene(4)), options, {.seed = 1});
+  const std::string table = taskTable(done.summary, 0xabcdef);
+  EXPECT_TRUE(table.starts_with("# checksum\t0000000000abcdef\n")) << table;
+  auto columns = columnsOf(table);
+  EXPECT_EQ(columns["role"], (std::vector<std::string>{"host", "voxel-trace", "voxel-trace", "voxel-trace",
+                                                       "pyramid-trace", "pyramid-trace", "shade"}));
+  std::uint64_t hits = 0, bytesOut = 0, bytesIn = 0;
+  for (const std::string& n : columns["hits"]) hits += std::stoull(n);
+  for (const std::string& n : columns["bytesOut"]) bytesOut += std::stoull(n);
+  for (const std::string& n : columns["bytesIn"]) bytesIn += std::stoull(n);
+  EXPECT_EQ(hits, done.counts.hits);
+  EXPECT_GT(hits, 0u);
+  // A report cannot count itself; everything else that is sent arrives.
+  EXPECT_GE(bytesIn, bytesOut);
+  EXPECT_LT(bytesIn, bytesOut + 10'000);
+}
+
+}  // namespace
+}  // namespace rayshade
