@@ -8,6 +8,7 @@
 #include "rayshade/options.h"
 #include "rayshade/progress.h"
 #include "rayshade/render.h"
+#include "rayshade/scene_plan.h"
 
 namespace {
 
@@ -43,6 +44,14 @@ void writeReport(std::FILE* to, const Scene& scene, const FrameResult& result, c
   std::fprintf(to, "%-24s %8.1f scene, %.1f process at most\n", "megabytes", megabytes(scene.bytes()),
                1e-3 * static_cast<double>(usage.ru_maxrss));
   std::fprintf(to, "%-24s %016" PRIx64 "\n", "picture checksum", pictureSum);
+}
+
+int printPlan(const Options& options) {
+  FeatureSink sink;
+  SceneHead head = parseScene(options.parse, sink);
+  applyOptions(options, head);
+  std::fputs(describe(scenePlan(sink.features(), head)).c_str(), stdout);
+  return 0;
 }
 
 int run(const Options& options) {
@@ -114,7 +123,10 @@ int run(const Options& options) {
 int main(int argc, char** argv) {
   CLI::App app("rayshade - renders a scene in the language of Rayshade 4", "rayshade");
   Options options;
+  bool plan = false;
   declareOptions(app, options);
+  app.add_flag("--plan", plan, "render nothing: print what the scene uses, and what is switched off")
+      ->group("Messages");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -126,7 +138,7 @@ int main(int argc, char** argv) {
   };
   options.parse.print = [](const std::string& message) { std::fprintf(stderr, "%s\n", message.c_str()); };
   try {
-    return run(options);
+    return plan ? printPlan(options) : run(options);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 1;
