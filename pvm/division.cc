@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "rayshade/cost.h"
+
 namespace rayshade {
 namespace {
 
@@ -11,15 +13,18 @@ constexpr std::uint64_t kObjectsPerCell = 2048;
 
 }  // namespace
 
-Division divideSpace(Survey& survey, const HostOptions& options, std::uint32_t tasks) {
+Division divideSpace(Survey& survey, const Sight& sight, const HostOptions& options, std::uint32_t tasks) {
   const std::uint32_t voxels = tasks * std::max(1u, options.voxelsPerTask);
   const auto bySize =
       static_cast<std::uint32_t>(std::min<std::uint64_t>(survey.objects / kObjectsPerCell, 1 << 16));
   const bool fetches = options.wishes.pyramids > 0 || options.policy.shadows != ShadowPolicy::forward;
   const std::uint32_t cells = options.cells > 0 ? options.cells : fetches ? bySize : voxels;
   Division division;
-  division.tree =
-      buildBinTree(survey.world, {.voxels = voxels, .cells = std::max(cells, voxels)}, survey.density);
+  std::vector<CostBox> costs;
+  if (options.split == Split::cost)
+    costs = predictCost(survey.world, survey.sketch, sight.view, sight.picture, sight.setting);
+  division.tree = buildBinTree(survey.world, {.voxels = voxels, .cells = std::max(cells, voxels)},
+                               survey.density, std::move(costs));
   for (std::uint32_t voxel = 0; voxel < voxelCount(division.tree); ++voxel)
     division.owners.push_back(voxel % tasks);
   return division;

@@ -14,7 +14,14 @@ struct Division {
   std::vector<std::uint32_t> owners;  // by voxel: the task of a cluster that has it
 };
 
+// What is looked at: it decides where the work will be.
+struct Sight {
+  const View& view;
+  const PictureSpec& picture;
+  const Setting& setting;
+};
+
 // `tasks`: of a cluster, at least one.
-Division divideSpace(Survey& survey, const HostOptions& options, std::uint32_t tasks);
+Division divideSpace(Survey& survey, const Sight& sight, const HostOptions& options, std::uint32_t tasks);
 
 }  // namespace rayshade

@@ -24,7 +24,7 @@ struct HostProgramOptions {
   MachineOptions machine;
   bool plan = false;
   std::string tableFile;
-  std::string schedule = "data";
+  std::string schedule = "data", split = "equal";
   std::optional<std::uint32_t> pyramids;
   std::optional<std::string> horizon, shadows, shading;
   std::optional<double> cacheMegabytes;
@@ -48,6 +48,7 @@ void settleSchedule(HostProgramOptions& o, std::uint32_t hosts) {
     policy.shadows = ShadowPolicy::local;
     policy.secondariesTravel = false;
   }
+  host.split = o.split == "cost" ? Split::cost : Split::equal;
   policy.shadeAtOnce = o.shading ? *o.shading == "near" : o.schedule != "data";
   // Every cluster has somebody to work for.
   if (host.wishes.pyramids > 0) host.wishes.pyramids = std::max(host.wishes.pyramids, host.wishes.clusters);
@@ -82,6 +83,9 @@ void declareHostOptions(CLI::App& app, HostProgramOptions& o) {
       ->group(tasks);
   app.add_option("--voxels-per-task", o.host.voxelsPerTask, "voxels that each voxel-trace task holds")
       ->check(CLI::Range(1, 64))
+      ->group(tasks);
+  app.add_option("--split", o.split, "voxels of equal size, or of equal predicted cost")
+      ->check(CLI::IsMember({"equal", "cost"}))
       ->group(tasks);
   app.add_option("--pyramids", o.pyramids, "pyramid-trace tasks (default: by the schedule)")
       ->check(CLI::Range(0, 4096))
@@ -213,13 +217,13 @@ int run(HostProgramOptions& options) {
   Survey survey = surveySink.survey();
   if (survey.objects == 0)
     throw SceneError(sceneName(options.render) + ": error: there is nothing to be rendered");
+  const View view = *viewOf(head.camera, head.picture);
   if (options.plan) {
     const std::vector<HostInfo> hosts = plannedHosts(options.machine);
     settleSchedule(options, static_cast<std::uint32_t>(hosts.size()));
-    std::fputs(describePlan(hosts, options.host, survey, head.setting).c_str(), stdout);
+    std::fputs(describePlan(hosts, options.host, survey, {view, head.picture, head.setting}).c_str(), stdout);
     return 0;
   }
-  const View view = *viewOf(head.camera, head.picture);
   const PixelArea area = *pixelArea(head.picture);
   const std::string outputFile = chooseOutput(options.render, head);
   const bool quiet = options.render.quiet || head.report.quiet;

@@ -376,7 +376,8 @@ void HostTask::renderFrame(const View& view, const PictureSpec& picture, std::in
   const auto voxelTasks = static_cast<std::uint32_t>(std::count_if(
       slaves_.begin(), slaves_.end(), [](const Slave& s) { return s.placement.role == Role::voxelTrace; }));
   directory_.clusters = std::max(1u, options_.wishes.clusters);
-  Division division = divideSpace(survey_, options_, voxelTasks / directory_.clusters);
+  Division division =
+      divideSpace(survey_, {view, picture, setting_}, options_, voxelTasks / directory_.clusters);
   tree_ = std::move(division.tree);
   directory_.voxels = std::move(division.owners);
   for (Slave& slave : slaves_) slave.hasItems = false;

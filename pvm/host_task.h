@@ -24,9 +24,16 @@
 
 namespace rayshade {
 
+// Into what voxels space is cut.
+enum class Split : std::uint8_t {
+  equal,  // of equal size (Reinhard & Jansen, section 3)
+  cost,   // of equal predicted work
+};
+
 struct HostOptions {
   Wishes wishes;
   std::uint32_t voxelsPerTask = 1;
+  Split split = Split::equal;
   std::uint32_t window = 4096;      // samples on their way
   std::uint32_t cells = 0;          // of the bin-tree, about; 0: by the size of the scene
   std::uint32_t tileSamples = 256;  // of a pyramid, at most

@@ -7,8 +7,8 @@
 
 #include <functional>
 
+#include "pvm/division.h"
 #include "pvm/host_file.h"
-#include "pvm/host_task.h"
 
 namespace rayshade {
 
@@ -21,6 +21,6 @@ std::vector<HostInfo> hostsAfterJoining(std::vector<HostInfo> running, const std
 // Lines of text: hosts, what travels, how space is divided, and the tasks with the reason for each.
 // `survey`: of the first frame.
 std::string describePlan(const std::vector<HostInfo>& hosts, const HostOptions& options, Survey survey,
-                         const Setting& setting);
+                         const Sight& sight);
 
 }  // namespace rayshade

@@ -39,7 +39,8 @@ class Cutter {
 
   Cutter(double side, std::uint64_t cellObjects) : side_(side), cellObjects_(cellObjects) {}
 
-  void cutVoxels(const Bounds& box, std::uint32_t voxels, Cubes cubes, int depth) {
+  void cutVoxels(const Bounds& box, std::uint32_t voxels, Cubes cubes, std::vector<CostBox> costs,
+                 int depth) {
     if (voxels == 1) {
       cutCells(box, cubes, depth, kVoxelFlag);
       return;
@@ -47,14 +48,15 @@ class Cutter {
     const int axis = longestAxis(box.size());
     const std::uint32_t below = voxels / 2;
     const double share = static_cast<double>(below) / voxels;
-    const double split = box.low[axis] + (box.high[axis] - box.low[axis]) * share;
+    const double split = splitAt(box, axis, share, costs);
     const auto [low, high] = cut(box, axis, split, 0);
     const auto middle = std::partition(cubes.begin(), cubes.end(), [&](const DensityGrid::Cube& cube) {
       return (index(cube, axis) + 0.5) * side_ < split;
     });
     const auto count = static_cast<std::size_t>(middle - cubes.begin());
-    cutVoxels(low, below, cubes.first(count), depth + 1);
-    cutVoxels(high, voxels - below, cubes.subspan(count), depth + 1);
+    auto [lowCosts, highCosts] = cutCosts(std::move(costs), axis, split);
+    cutVoxels(low, below, cubes.first(count), std::move(lowCosts), depth + 1);
+    cutVoxels(high, voxels - below, cubes.subspan(count), std::move(highCosts), depth + 1);
   }
 
   TreeCode code;
@@ -70,6 +72,40 @@ class Cutter {
     Bounds low = box, high = box;
     low.high[axis] = high.low[axis] = split;
     return {low, high};
+  }
+
+  // Where the box is cut so that `share` of the costs, or of the length when there are none, is on the low side.
+  static double splitAt(const Bounds& box, int axis, double share, const std::vector<CostBox>& costs) {
+    const double low = box.low[axis], length = box.high[axis] - low;
+    double all = 0;
+    for (const CostBox& c : costs) all += c.cost;
+    if (!(all > 0 && all < kInfinity)) return low + length * share;
+    double from = 1.0 / 16, to = 15.0 / 16;
+    for (int i = 0; i < 40; ++i) {
+      const double middle = 0.5 * (from + to);
+      double below = 0;
+      for (const CostBox& c : costs) below += c.cost * shareBelow(c.box, axis, low + length * middle);
+      (below < share * all ? from : to) = middle;
+    }
+    return low + length * from;
+  }
+
+  static double shareBelow(const Bounds& box, int axis, double split) {
+    if (split >= box.high[axis]) return 1;
+    if (split <= box.low[axis]) return 0;
+    return (split - box.low[axis]) / (box.high[axis] - box.low[axis]);
+  }
+
+  static std::pair<std::vector<CostBox>, std::vector<CostBox>> cutCosts(std::vector<CostBox> costs, int axis,
+                                                                        double split) {
+    std::vector<CostBox> low, high;
+    for (const CostBox& c : costs) {
+      const double share = shareBelow(c.box, axis, split);
+      if (share > 0) low.push_back({c.box, c.cost * share});
+      if (share < 1) high.push_back({c.box, c.cost * (1 - share)});
+      if (share > 0 && share < 1) low.back().box.high[axis] = high.back().box.low[axis] = split;
+    }
+    return {std::move(low), std::move(high)};
   }
 
   void cutCells(const Bounds& box, Cubes cubes, int depth, std::uint8_t flag) {
@@ -150,15 +186,23 @@ Bounds boundsOfNode(const BinTree& tree, std::uint32_t wanted) {
 
 }  // namespace
 
-BinTree buildBinTree(const Bounds& world, const TreeLimits& limits, DensityGrid& density) {
+BinTree buildBinTree(const Bounds& world, const TreeLimits& limits, DensityGrid& density,
+                     std::vector<CostBox> costs) {
   const std::uint32_t voxels = std::clamp(limits.voxels, 1u, kMaxVoxels);
   const std::uint32_t cells = std::clamp(limits.cells, voxels, kMaxCells);
   std::vector<DensityGrid::Cube> cubes;
   std::uint64_t objects = 0;
   if (cells > voxels) cubes.assign(density.cubes().begin(), density.cubes().end());
   for (const DensityGrid::Cube& cube : cubes) objects += cube.count;
-  Cutter cutter(density.side(), (objects + cells - 1) / cells);
-  cutter.cutVoxels(cuttable(world), voxels, cubes, 0);
+  const std::uint64_t cellObjects = (objects + cells - 1) / cells;
+  if (!costs.empty()) {
+    Cutter cutter(density.side(), cellObjects);
+    cutter.cutVoxels(cuttable(world), voxels, cubes, std::move(costs), 0);
+    // Costs in one point may ask for cuts that doubles cannot tell apart.
+    if (std::optional<BinTree> tree = treeFrom(cutter.code)) return *tree;
+  }
+  Cutter cutter(density.side(), cellObjects);
+  cutter.cutVoxels(cuttable(world), voxels, cubes, {}, 0);
   return treeFrom(cutter.code).value_or(BinTree{});
 }
 

@@ -50,11 +50,20 @@ struct TreeLimits {
   std::uint32_t cells = 1;   // about so many in all (up to twice that), never fewer than voxels
 };
 
+// Work that is expected in a part of space, in any unit.
+struct CostBox {
+  Bounds box;  // of finite size
+  double cost = 0;
+};
+
 // Cuts the box `world` into voxels of equal size, each time across the longest side, in proportion to the
 // voxels on each side; a world that is flat is cut along its other sides, one that is a point or empty or
 // infinite is taken as a small box.  Then cuts each voxel into cells that hold about the same number of
 // objects, at borders of the cubes of `density` and across the longest side where that separates something.
-BinTree buildBinTree(const Bounds& world, const TreeLimits& limits, DensityGrid& density);
+// With `costs`, the voxels are of about equal cost instead: each cut is moved along its axis until the costs on both sides
+// are in that proportion, as far as both keep a sixteenth of the length.
+BinTree buildBinTree(const Bounds& world, const TreeLimits& limits, DensityGrid& density,
+                     std::vector<CostBox> costs = {});
 BinTree buildBinTree(const Bounds& world, const TreeLimits& limits);
 
 inline std::uint32_t cellCount(const BinTree& tree) {

@@ -4,6 +4,7 @@
 
 #include "rayshade/scene/object_stream.h"
 #include "rayshade/space/density.h"
+#include "rayshade/space/sketch.h"
 
 namespace rayshade {
 
@@ -11,6 +12,7 @@ struct Survey {
   std::uint64_t objects = 0;  // of the world
   Bounds world;               // of the bounded ones, at the exposure of the survey
   DensityGrid density;        // of all of them, for cutting space into cells
+  Sketch sketch;              // of the bounded ones, for predicting where the work will be
   bool moves = false;         // something moves: another exposure needs another survey
 };
 
@@ -21,6 +23,7 @@ class SurveySink : public SceneSink {
                 [this](const SceneObject&, const Bounds& bounds, std::span<const FrameItem* const>) {
                   if (bounds.finite()) survey_.world = join(survey_.world, bounds);
                   survey_.density.add(bounds);
+                  survey_.sketch.add(bounds);
                 }) {}
 
   void surface(SurfaceId id, const Surface& surface) override { stream_.surface(id, surface); }

@@ -13,19 +13,21 @@
 namespace rayshade {
 namespace {
 
-struct Split {
+struct Splitting {
   std::uint32_t voxelTasks, voxelsPerTask, shades, window;
   std::uint64_t delivery;
   std::uint32_t pyramids = 0, clusters = 1;
+  Split by = Split::equal;
 };
 
-std::ostream& operator<<(std::ostream& out, const Split& s) {
+std::ostream& operator<<(std::ostream& out, const Splitting& s) {
   return out << "--voxels " << s.voxelTasks << " --voxels-per-task " << s.voxelsPerTask << " --shades "
              << s.shades << " --window " << s.window << " --pyramids " << s.pyramids << " --clusters "
-             << s.clusters << ", delivery seed " << s.delivery;
+             << s.clusters << (s.by == Split::cost ? " --split cost" : "") << ", delivery seed "
+             << s.delivery;
 }
 
-Split randomSplit(std::uint64_t seed) {
+Splitting randomSplit(std::uint64_t seed) {
   const std::uint64_t bits = mixBits(seed);
   constexpr std::uint32_t windows[] = {1, 7, 256, 4096};
   return {1 + static_cast<std::uint32_t>(bits % 8),
@@ -34,16 +36,18 @@ Split randomSplit(std::uint64_t seed) {
           windows[bits / 72 % 4],
           bits / 288,
           static_cast<std::uint32_t>(bits / 288 % 3),
-          1 + static_cast<std::uint32_t>(bits / 864 % 2)};
+          1 + static_cast<std::uint32_t>(bits / 864 % 2),
+          bits / 1728 % 2 == 0 ? Split::equal : Split::cost};
 }
 
-RenderedByTasks renderSplit(const Job& job, const Split& split) {
+RenderedByTasks renderSplit(const Job& job, const Splitting& split) {
   HostOptions host;
   host.wishes.voxels = split.voxelTasks;
   host.wishes.shades = split.shades;
   host.wishes.pyramids = split.pyramids;
   host.wishes.clusters = split.clusters;
   host.voxelsPerTask = split.voxelsPerTask;
+  host.split = split.by;
   host.window = split.window;
   host.policy.shadows = ShadowPolicy{static_cast<std::uint8_t>(split.delivery % 3)};
   SimulatedMachine::Options machine;
@@ -69,7 +73,7 @@ TEST(Equivalence, RandomScenesHaveTheSameBitsHoweverTheyAreSplit) {
     const Job job = jobOfText(randomScene(seed));
     const Rendered expected = renderSequentially(job);
     for (std::uint64_t trial = 0; trial < 3; ++trial) {
-      const Split split = randomSplit(3 * seed + trial);
+      const Splitting split = randomSplit(3 * seed + trial);
       SCOPED_TRACE(split);
       const RenderedByTasks got = renderSplit(job, split);
       ASSERT_EQ(difference(got.frames, expected.frames), "");
@@ -90,10 +94,11 @@ TEST(Equivalence, TheTasksTogetherDoTheWorkOfOneProcessOverTheSameVoxels) {
     SCOPED_TRACE("scene seed " + std::to_string(seed));
     Job job = jobOfText(randomScene(seed));
     job.options.samples = 1;  // no guesses
-    Split split = randomSplit(1000 + seed);
-    split.pyramids = 0;   // they fetch cells instead of sending rays: other visits
-    split.clusters = 1;   // copies: every object is owned more than once
-    split.delivery *= 3;  // shadow rays travel, too: ShadowPolicy::forward
+    Splitting split = randomSplit(1000 + seed);
+    split.pyramids = 0;       // they fetch cells instead of sending rays: other visits
+    split.by = Split::equal;  // as the sequential renderer cuts
+    split.clusters = 1;       // copies: every object is owned more than once
+    split.delivery *= 3;      // shadow rays travel, too: ShadowPolicy::forward
     SCOPED_TRACE(split);
     const Rendered expected = renderSequentially(job, split.voxelTasks * split.voxelsPerTask);
     const RenderedByTasks got = renderSplit(job, split);
@@ -114,7 +119,7 @@ TEST(Equivalence, EverySplitOfOneSceneHasTheSameBits) {
   for (std::uint32_t voxels = 1; voxels <= 8; ++voxels)
     for (std::uint32_t perTask = 1; perTask <= 3; ++perTask)
       for (std::uint32_t shades = 1; shades <= 3; ++shades) {
-        const Split split{voxels, perTask, shades, delivery % 2 == 0 ? 7u : 256u, delivery};
+        const Splitting split{voxels, perTask, shades, delivery % 2 == 0 ? 7u : 256u, delivery};
         ++delivery;
         SCOPED_TRACE(split);
         ASSERT_EQ(difference(renderSplit(job, split).frames, expected.frames), "");
@@ -139,7 +144,7 @@ TEST(Equivalence, ScenesOfTheSuiteHaveTheSameBits) {
     job.options.resolution = {40, 30};
     job.options.window = {0, 39, 0, 29};
     const Rendered expected = renderSequentially(job);
-    const Split split = randomSplit(5000 + number++);
+    const Splitting split = randomSplit(5000 + number++);
     SCOPED_TRACE(split);
     EXPECT_EQ(difference(renderSplit(job, split).frames, expected.frames), "");
     EXPECT_EQ(expected.frames.size(), static_cast<std::size_t>(scene.frames));

@@ -37,6 +37,7 @@ HostOptions randomSchedule(std::uint64_t seed) {
   host.cells = dice.one({1u, 8u, 60u, 400u});
   host.tileSamples = dice.one({1u, 16u, 256u});
   host.dynamicShading = dice.below(4) == 0;
+  host.split = dice.one({Split::equal, Split::cost});
   DemandPolicy& policy = host.policy;
   policy.shadows = dice.one({ShadowPolicy::forward, ShadowPolicy::local, ShadowPolicy::automatic});
   policy.secondariesTravel = dice.below(3) != 0;

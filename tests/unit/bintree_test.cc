@@ -141,6 +141,59 @@ TEST(BinTree, CellsLeaveTheVoxelsAsTheyAre) {
   for (std::uint32_t v = 0; v < 7; ++v) EXPECT_EQ(boundsOf(coarse, VoxelId{v}), boundsOf(fine, VoxelId{v}));
 }
 
+// How much of the costs lies in each voxel.
+std::vector<double> costsOf(const BinTree& tree, const std::vector<CostBox>& costs) {
+  std::vector<double> sums;
+  for (std::uint32_t v = 0; v < voxelCount(tree); ++v) {
+    const Bounds voxel = boundsOf(tree, VoxelId{v});
+    double sum = 0;
+    for (const CostBox& c : costs)
+      if (overlap(voxel, c.box)) sum += c.cost * volume(voxel, c.box) / volume(c.box, c.box);
+    sums.push_back(sum);
+  }
+  return sums;
+}
+
+TEST(BinTree, VoxelsOfEqualCostShareOutTheCosts) {
+  std::vector<CostBox> costs;  // most of it near a corner
+  for (int i = 0; i < 512; ++i) {
+    const Vec3 low{i % 8 / 8.0, i / 8 % 8 / 8.0, i / 64 / 8.0};
+    costs.push_back({{low, low + Vec3{0.125, 0.125, 0.125}}, std::exp(-6 * (low.x + low.y + low.z))});
+  }
+  double all = 0;
+  for (const CostBox& c : costs) all += c.cost;
+  for (const std::uint32_t n : {2u, 3u, 8u, 13u}) {
+    DensityGrid none;
+    const BinTree tree = buildBinTree(kUnit, {.voxels = n}, none, costs);
+    ASSERT_EQ(voxelCount(tree), n);
+    for (const double cost : costsOf(tree, costs)) EXPECT_NEAR(cost, all / n, 0.02 * all / n) << n;
+    expectPartition(tree);
+    // Cut into equal voxels, one of them has most of it.
+    const std::vector<double> equal = costsOf(buildBinTree(kUnit, {.voxels = n}), costs);
+    EXPECT_GT(*std::max_element(equal.begin(), equal.end()), 1.5 * all / n);
+  }
+}
+
+TEST(BinTree, CostsThatCannotBeSharedOutStillGiveEveryVoxel) {
+  const double nan = std::nan("");
+  const Bounds corner{{0, 0, 0}, {0x1p-40, 0x1p-40, 0x1p-40}};
+  const std::vector<CostBox> cases[] = {{{corner, 1}},
+                                        {{{{0.5, 0.5, 0.5}, {0.5, 0.5, 0.5}}, 1}},
+                                        {{kUnit, nan}},
+                                        {{kUnit, kInfinity}},
+                                        {{kUnit, 0}},
+                                        {{kUnit, -1}},
+                                        {{{{nan, nan, nan}, {nan, nan, nan}}, 1}},
+                                        {{{{5, 5, 5}, {6, 6, 6}}, 1}}};
+  for (const std::vector<CostBox>& costs : cases)
+    for (const std::uint32_t n : {1u, 7u, 1000u, kMaxVoxels}) {
+      DensityGrid none;
+      EXPECT_EQ(voxelCount(buildBinTree(kUnit, {.voxels = n}, none, costs)), n);
+      const Bounds line{{1, 1, 1}, {1 + 0x1p-23, 1, 1}};
+      EXPECT_EQ(voxelCount(buildBinTree(line, {.voxels = n}, none, costs)), n);
+    }
+}
+
 // Hard case D18: nothing can separate them, so nothing is cut.
 TEST(BinTree, CoincidentObjectsMakeNoCells) {
   DensityGrid grid;

@@ -47,16 +47,18 @@ TEST(Plan, HostsOfARunningMachineStayAndOthersJoin) {
 
 struct Surveyed {
   Survey survey;
-  Setting setting;
+  SceneHead head;
+  View view = viewOf(head.camera, head.picture).value();
+  Sight sight() const { return {view, head.picture, head.setting}; }
 };
 Surveyed surveyOf(const std::string& scene) {
   SurveySink sink({});
   const SceneHead head = jobOfText(scene).read(sink);
-  return {sink.survey(), head.setting};
+  return {sink.survey(), head};
 }
 std::string planOf(const std::string& scene, const std::vector<HostInfo>& hosts, const HostOptions& options) {
   const Surveyed s = surveyOf(scene);
-  return describePlan(hosts, options, s.survey, s.setting);
+  return describePlan(hosts, options, s.survey, s.sight());
 }
 std::vector<std::string> lines(const std::string& text) {
   std::vector<std::string> all;
@@ -116,14 +118,31 @@ TEST(Plan, SaysWhatTheSceneAndTheScheduleDoWithoutTasks) {
 }
 
 TEST(Division, EveryVoxelHasAnOwnerEvenWhenMoreAreWishedThanTreesMayHave) {
-  Survey survey = surveyOf(randomScene(2)).survey;
+  Surveyed scene = surveyOf(randomScene(2));
   HostOptions options;
   options.voxelsPerTask = 64;
   for (std::uint32_t tasks : {1u, 3u, 4096u}) {
-    const Division division = divideSpace(survey, options, tasks);
+    const Division division = divideSpace(scene.survey, scene.sight(), options, tasks);
     ASSERT_EQ(division.owners.size(), voxelCount(division.tree));
     EXPECT_EQ(*std::max_element(division.owners.begin(), division.owners.end()), tasks - 1);
   }
+}
+
+TEST(Division, VoxelsOfEqualCostAreSmallWhereTheEyeLooks) {
+  std::string scene = "screen 64 64 eyep 10 0 50 lookp 10 0 0 up 0 1 0 fov 10 ";
+  for (int i = 0; i < 400; ++i)
+    scene += "sphere diffuse 1 1 1 .4 " + std::to_string(i % 20) + " " + std::to_string(i / 20 - 10) + " 0 ";
+  Surveyed s = surveyOf(scene);
+  HostOptions options;
+  options.split = Split::cost;
+  const Division division = divideSpace(s.survey, s.sight(), options, 8);
+  std::vector<VoxelId> seen;  // the eye sees x from 5.6 to 14.4
+  voxelsTouching(division.tree, {{6, -4, -1}, {14, 4, 1}}, seen);
+  EXPECT_GE(seen.size(), 6u);
+  options.split = Split::equal;
+  seen.clear();
+  voxelsTouching(divideSpace(s.survey, s.sight(), options, 16).tree, {{8, -2, -1}, {9, -1, 1}}, seen);
+  EXPECT_LE(seen.size(), 4u);
 }
 
 // The table as a map from column to values, by the names in its first line.
