@@ -76,6 +76,7 @@ $(BIN)/link-tests: $(link_test) $(pvm_door) $(BUILD)/libtasks.a $(BUILD)/libcore
 	$(call link,-lgtest -lpthread -lpvm3)
 $(BIN)/pvm-tests: $(pvm_tests) $(BUILD)/tests/support/program.o $(pvm_door) $(BUILD)/libtasks.a $(BUILD)/libcore.a
 	$(call link,-lgtest -lgtest_main -lpthread -lpvm3)
+$(BIN)/bench/oracle_fuzz: $(BUILD)/tests/support/oracle.o
 $(BIN)/bench/%: $(BUILD)/tests/bench/%.o $(pvm_door) $(BUILD)/libtasks.a $(BUILD)/libspd.a $(BUILD)/libcore.a
 	$(call link,-lbenchmark -lpthread -lpvm3)
 

@@ -73,7 +73,7 @@ struct Box {
     at.position[hitAxis] = hitHigh ? high[hitAxis] : low[hitAxis];
     at.normal[hitAxis] = hitHigh ? 1 : -1;
     at.geometricNormal = at.normal;
-    at.error = kRounding * maxAbs(at.position);
+    at.error = kRounding * std::max(maxAbs(low), maxAbs(high));
     return at;
   }
 

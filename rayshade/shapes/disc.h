@@ -45,8 +45,7 @@ struct Disc {
   }
 
   ShapePoint pointAt(const LocalRay& ray, double t) const {
-    const Vec3 position = ontoPlane(ray.origin + t * ray.direction, centre, normal);
-    return {position, normal, normal, {}, kRounding * (maxAbs(position) + maxAbs(centre))};
+    return ontoPlane(ray.origin + t * ray.direction, centre, normal);
   }
 
   // v from the centre to the rim.  u is rayshade's own: an angle about z through the origin of the object's

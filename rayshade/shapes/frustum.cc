@@ -27,6 +27,26 @@ Bounds Frustum::bounds() const {
               Bounds{end - endRadius * reach, end + endRadius * reach});
 }
 
+// A ray nearly along a generator has a small A, of which little is left but rounding; its far root may be near the
+// apex, where that shows.  Newton's steps from the point itself, as long as they shrink.
+double Frustum::improved(double root, Vec3 from, Vec3 direction, double between) const {
+  const double climb = dot(direction, axis);
+  const Vec3 e = direction - climb * axis;
+  double largest = between;
+  for (int turn = 0; turn < 4; ++turn) {
+    const Vec3 p = from + root * direction;
+    const double height = dot(p, axis);
+    const Vec3 f = p - height * axis;
+    const double there = radius + growth() * height, rho = rayshade::length(f);
+    const double step = (rho - there) * (rho + there) / (2 * (dot(f, e) - there * growth() * climb));
+    if (!(std::abs(step) < 0.5 * largest)) break;
+    largest = std::abs(step);
+    root -= step;
+    if (largest <= 0x1p-52 * std::abs(root)) break;
+  }
+  return root;
+}
+
 double Frustum::intersect(const LocalRay& ray, double tMin) const {
   const Vec3 from = ray.origin - base;
   // The distance of the two lines, against the largest radius: most rays that miss are known by it.
@@ -47,10 +67,14 @@ double Frustum::intersect(const LocalRay& ray, double tMin) const {
   if (!(discriminant >= 0)) return kNoHit;
 
   const double q = -(b + std::copysign(std::sqrt(discriminant), b));
+  const double far = q / a, reachable = std::abs(far);
+  // Not beyond the far one: near a tangent c is rounding.
+  const double other = std::min(std::max(c / q, -reachable), reachable);
   double nearest = kNoHit;
   // A ray along a generator has a = 0 and one root, a ray along a cylinder none, a ray through the apex may
   // have q = 0: what is infinite or NaN then fails the comparisons.
-  for (const double root : {q / a, c / q}) {
+  for (double root : {far, other}) {
+    if (endRadius != radius) root = improved(root, from, ray.direction, std::abs(far - other));
     const double z = height + root * climb;
     if (root > tMin && root < nearest && z >= 0 && z <= length) nearest = root;
   }

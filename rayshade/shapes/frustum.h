@@ -28,6 +28,9 @@ struct Frustum {
   SurfaceCoordinates coordinates(Vec3 position) const;
 
   double growth() const { return (endRadius - radius) / length; }
+
+ private:
+  double improved(double root, Vec3 from, Vec3 direction, double between) const;
 };
 
 // Nothing when there is no side: no length, a negative radius, both radii zero, a number that is not finite.

@@ -98,6 +98,12 @@ struct Meeting {
   std::array<double, 3> weights{};  // of the corners; their sum is 1
 };
 
+// The same, right to the last digits also where the products nearly cancel: a weight.  Source: shear.h.
+double weight(Vec3 a, Vec3 b) {
+  const double q = a.y * b.x;
+  return std::fma(a.x, b.y, -q) + std::fma(-a.y, b.x, q);
+}
+
 // How much the origin is a share of `a`, if it lies on the line from a to b; the share of b is shareOf(b, a),
 // and exchanging the names changes no bit.
 double shareOf(Vec3 a, Vec3 b) {
@@ -109,6 +115,7 @@ Meeting meet(const Shear& shear, const Triangle& triangle) {
   const std::array<Vec3, 3> p{shear(triangle[0]), shear(triangle[1]), shear(triangle[2])};
   std::array<double, 3> w{side(p[1], p[2]), side(p[2], p[0]), side(p[0], p[1])};
   if ((w[0] < 0 || w[1] < 0 || w[2] < 0) && (w[0] > 0 || w[1] > 0 || w[2] > 0)) return {};
+  w = {weight(p[1], p[2]), weight(p[2], p[0]), weight(p[0], p[1])};
   const double sum = w[0] + w[1] + w[2];
   if (!(sum != 0 && std::isfinite(sum))) return {};  // the ray lies in the plane
   for (double& weight : w) weight /= sum;

@@ -20,8 +20,9 @@ inline double meetPlane(const LocalRay& ray, Vec3 point, Vec3 normal) {
 }
 
 // A point near the plane through `point`, moved onto it; `normal` is of length 1.
-inline Vec3 ontoPlane(Vec3 position, Vec3 point, Vec3 normal) {
-  return position - normal * dot(normal, position - point);
+inline ShapePoint ontoPlane(Vec3 along, Vec3 point, Vec3 normal) {
+  const Vec3 position = along - normal * dot(normal, along - point);
+  return {position, normal, normal, {}, kRounding * (maxAbs(along) + maxAbs(point))};
 }
 
 struct Plane {
@@ -52,8 +53,7 @@ struct Plane {
   }
 
   ShapePoint pointAt(const LocalRay& ray, double t) const {
-    const Vec3 position = ontoPlane(ray.origin + t * ray.direction, point, normal);
-    return {position, normal, normal, {}, kRounding * (maxAbs(position) + maxAbs(point))};
+    return ontoPlane(ray.origin + t * ray.direction, point, normal);
   }
 
   // Distances from the point along two axes in the plane, the first of them level.  They go with the normal

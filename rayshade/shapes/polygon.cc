@@ -114,8 +114,7 @@ void Polygon::prepare() {
 }
 
 ShapePoint Polygon::pointAt(const LocalRay& ray, double t) const {
-  const Vec3 position = ontoPlane(ray.origin + t * ray.direction, corners[0], normal);
-  return {position, normal, normal, {}, kRounding * (maxAbs(position) + maxAbs(corners[0]))};
+  return ontoPlane(ray.origin + t * ray.direction, corners[0], normal);
 }
 
 Polygon Polygon::flipped() const {

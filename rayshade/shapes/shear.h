@@ -70,5 +70,11 @@ inline double turn(const ShearedPoint& a, const ShearedPoint& b) {
     return left - right;
   return std::fma(a.x, b.y, -left) - std::fma(a.y, b.x, -right);
 }
+// The same, right to the last digits also where the products nearly cancel.
+// Source: Kahan; error at most 1.5 ulp: Jeannerod, Louvet & Muller 2013, Further analysis of Kahan's algorithm.
+inline double turnToTheLastDigit(const ShearedPoint& a, const ShearedPoint& b) {
+  const double right = a.y * b.x;
+  return std::fma(a.x, b.y, -right) + std::fma(-a.y, b.x, right);
+}
 
 }  // namespace rayshade

@@ -45,7 +45,8 @@ struct Sphere {
     if (!(quarter >= 0)) return kNoHit;
     const double outside = dot(f, f) - rr;
     const double far = b + std::copysign(std::sqrt(quarter), b);  // the root of larger magnitude
-    const double other = far != 0 ? outside / far : 0.0;
+    // Not beyond the far one: near a tangent `outside` is rounding.
+    const double other = far != 0 ? std::clamp(outside / far, -std::abs(far), std::abs(far)) : 0.0;
     const double first = std::min(far, other), second = std::max(far, other);
     return first > tMin ? first : second > tMin ? second : kNoHit;
   }

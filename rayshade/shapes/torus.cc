@@ -31,31 +31,37 @@ Quartic quarticAlong(const Line& line) {
           4 * md * md + 2 * k - four * (d.x * d.x + d.y * d.y), 4 * md, 1};
 }
 
-// How far the point at x is from the surface, and how that changes with x; squares, as in the file header.
+// How far the point at x is from the nearer sheet of the surface, and how that changes with x; squares, as in the file
+// header.  `inside` changes at every sheet.
 struct Residual {
   double value, slope;
+  bool inside;
 };
 Residual residualAt(const Line& line, double x) {
   const Vec3 p = line.foot + x * line.direction, d = line.direction;
   const double rho = std::sqrt(p.x * p.x + p.y * p.y);
   const double rest = p.z * p.z - line.tube * line.tube;
   const double near = rho - line.swept, far = rho + line.swept;
-  const double side = std::abs(near * near + rest) <= std::abs(far * far + rest) ? near : far;
+  const double outer = near * near + rest, inner = far * far + rest;
+  const bool isOuter = std::abs(outer) <= std::abs(inner);
   const double widening = rho > 0 ? (p.x * d.x + p.y * d.y) / rho : 0;
-  return {side * side + rest, 2 * (side * widening + p.z * d.z)};
+  return {isOuter ? outer : inner, 2 * ((isOuter ? near : far) * widening + p.z * d.z),
+          (outer < 0) != (inner < 0)};
 }
 
-// Newton steps in the accurate form, as long as they help and stay nearer to this root than to its
-// neighbours.
-double improved(const Line& line, double x, double low, double high) {
-  Residual at = residualAt(line, x);
-  for (int step = 0; step < 3; ++step) {
-    const double next = x - at.value / at.slope;
-    if (!(next > low && next < high)) break;
-    const Residual there = residualAt(line, next);
-    if (!(std::abs(there.value) < std::abs(at.value))) break;
+// The root in (a, b), of which one end is inside.
+double closeIn(const Line& line, double a, double b, bool insideAtA) {
+  double x = a + (b - a) / 2, step = b - a;
+  // Every turn halves the bracket or Newton's step, so this ends long before the 128th.
+  for (int turn = 0; turn < 128; ++turn) {
+    const Residual at = residualAt(line, x);
+    if (at.value == 0) return x;
+    (at.inside == insideAtA ? a : b) = x;
+    double next = x - at.value / at.slope;
+    if (!(next > a && next < b && std::abs(next - x) <= std::abs(step) / 2)) next = a + (b - a) / 2;
+    step = next - x;
+    if (std::abs(step) <= 0x1p-53 * std::abs(x) || next == a || next == b) return next;
     x = next;
-    at = there;
   }
   return x;
 }
@@ -88,19 +94,34 @@ double Torus::intersect(const LocalRay& ray, double tMin) const {
   const Vec3 foot = (start + tFoot * ray.direction) / unit;
   // Only the stretch inside of a sphere around the torus, a little too large so that no root lies at its end.
   const double reach = 1.0001 * (swept + tube) / unit;
-  const double quarter = reach * reach - dot(foot, foot);
+  const double middle = -dot(foot, ray.direction);  // zero but for rounding, which is large from far away
+  const Vec3 beside = foot + middle * ray.direction;
+  const double quarter = reach * reach - dot(beside, beside);
   if (!(quarter >= 0)) return kNoHit;
-  const double half = std::sqrt(quarter);
+  const double low = middle - std::sqrt(quarter), high = middle + std::sqrt(quarter);
 
   const Matrix axes = axesOf(*this);
   const Line line{toCanonical(axes, foot), toCanonical(axes, ray.direction), swept / unit, tube / unit};
-  const Roots roots = rootsBetween(quarticAlong(line), -half, half);
-  for (std::size_t i = 0; i < roots.count; ++i) {
-    const double x = roots.at[i];
-    const double low = i > 0 ? (roots.at[i - 1] + x) / 2 : -half;
-    const double high = i + 1 < roots.count ? (x + roots.at[i + 1]) / 2 : half;
-    const double t = tFoot + unit * improved(line, x, low, high);
-    if (t > tMin) return t;
+  // Between two turning points of the quartic there is a root exactly when the ray changes sides; a turning point that is
+  // on the surface is a root of its own (the ray touches).
+  const Quartic c = quarticAlong(line);
+  const Roots turns = rootsBetween(Cubic{c[1], 2 * c[2], 3 * c[3], 4 * c[4]}, low, high);
+  const double touch = 8 * 0x1p-53 * line.tube * (line.swept + line.tube);
+  double from = low;
+  bool insideFrom = false, touched = false;
+  for (std::size_t i = 0; i <= turns.count; ++i) {
+    const bool last = i == turns.count;
+    const double to = last ? high : turns.at[i];
+    const Residual there = residualAt(line, to);
+    const bool touches = !last && std::abs(there.value) <= touch;
+    const bool crosses = !touches && !touched && there.inside != insideFrom;
+    if (touches || crosses) {
+      const double t = tFoot + unit * (touches ? to : closeIn(line, from, to, insideFrom));
+      if (t > tMin) return t;
+    }
+    from = to;
+    insideFrom = there.inside;
+    touched = touches;
   }
   return kNoHit;
 }
@@ -113,10 +134,10 @@ ShapePoint Torus::pointAt(const LocalRay& ray, double t) const {
   // The nearest point of the swept circle; on the inner sheet of a spindle torus the farthest one counts.
   const double near = std::hypot(rho - swept, q.z), far = std::hypot(rho + swept, q.z);
   const bool innerSheet = std::abs(far - tube) < std::abs(near - tube);
-  const Vec3 circle = (innerSheet ? -swept : swept) * outward;
-  Vec3 fromCircle = normalize(q - circle);
-  if (fromCircle == Vec3{}) fromCircle = outward;
-  const Vec3 onSurface = circle + tube * fromCircle;
+  const double middle = innerSheet ? -swept : swept, side = rho - middle, away = std::hypot(side, q.z);
+  // In the plane of the axis, whatever rounding says: q may be on the swept circle itself.
+  const Vec3 fromCircle = away > 0 ? (side / away) * outward + Vec3{0, 0, q.z / away} : outward;
+  const Vec3 onSurface = middle * outward + tube * fromCircle;
   // Inside of the inner sheet the ray is outside of the solid, so the normal points there.
   const Vec3 normal = normalize(mapVector(axes, innerSheet ? -fromCircle : fromCircle));
   return {mapPoint(axes, onSurface) + centre,

@@ -6,8 +6,9 @@
 // With the axis as z and rho^2 = x^2 + y^2: points with (rho - swept)^2 + z^2 = tube^2, or multiplied by the
 // same with +swept and so freed of the root, (p.p + swept^2 - tube^2)^2 = 4 swept^2 rho^2.  Along a ray that
 // is a quartic.  It is set up at the foot of the perpendicular from the centre, so that its coefficients are
-// of the size of the torus wherever the ray comes from; its roots are then improved in the first form, which
-// keeps its accuracy when the tube is thin.  tube > swept is the spindle torus, its inner sheet included.
+// of the size of the torus wherever the ray comes from.  Only its turning points are used: which side of the
+// surface they are on, and the roots between them, comes from the first form, which keeps its accuracy when the
+// tube is thin.  tube > swept is the spindle torus, its inner sheet included.
 // Source: Hanrahan, A Survey of Ray-Surface Intersection Algorithms, in Glassner, An Introduction to Ray
 // Tracing, 1989.
 // SPDX-License-Identifier: BSD-3-Clause

@@ -50,7 +50,8 @@ Vec3 Triangle::normal() const {
 
 ShapePoint Triangle::pointAt(const LocalRay& ray, double) const {
   const EdgeTurns w = lookAlong(ray, [this](const auto& shear) {
-    return EdgeTurns(shear(corners[0]), shear(corners[1]), shear(corners[2]));
+    const ShearedPoint a = shear(corners[0]), b = shear(corners[1]), c = shear(corners[2]);
+    return EdgeTurns(a, b, c).sharpened(a, b, c);
   });
   const double sum = w.sum();
   const Vec3 share{w.a / sum, w.b / sum, w.c / sum};

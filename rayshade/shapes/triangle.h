@@ -33,6 +33,20 @@ struct EdgeTurns {
     return (negative & positive) == 0;
   }
   bool edgeMet() const { return (a == 0) + (b == 0) + (c == 0) == 1; }  // and no corner
+
+  // As weights: of a needle, or a face seen edge on, rounding would leave little but its own.
+  EdgeTurns sharpened(const ShearedPoint& pa, const ShearedPoint& pb, const ShearedPoint& pc) const {
+    const double width = std::max({std::abs(pa.x), std::abs(pb.x), std::abs(pc.x)});
+    const double height = std::max({std::abs(pa.y), std::abs(pb.y), std::abs(pc.y)});
+    constexpr double kClear = 0x1p-4;  // no more than four bits are lost
+    if (std::abs(sum()) > kClear * width * height) [[likely]]
+      return *this;
+    EdgeTurns sharp = *this;
+    sharp.a = turnToTheLastDigit(pb, pc);
+    sharp.b = turnToTheLastDigit(pc, pa);
+    sharp.c = turnToTheLastDigit(pa, pb);
+    return sharp;
+  }
 };
 
 // t where the ray meets the edge from a to b.  The same bits for either direction of the edge, so that the
@@ -66,9 +80,10 @@ static_assert(sizeof(Triangle) == 72);
 inline double Triangle::intersect(const LocalRay& ray, double tMin) const {
   return lookAlong(ray, [this, tMin](const auto& shear) {
     const ShearedPoint a = shear(corners[0]), b = shear(corners[1]), c = shear(corners[2]);
-    const EdgeTurns w(a, b, c);
+    const EdgeTurns turns(a, b, c);
+    if (!turns.inside() || turns.sum() == 0) return kNoHit;  // a zero sum: the ray lies in the plane
+    const EdgeTurns w = turns.sharpened(a, b, c);
     const double sum = w.sum();
-    if (!w.inside() || sum == 0) return kNoHit;  // a zero sum: the ray lies in the plane
     double t;
     if (w.edgeMet()) [[unlikely]] {
       t = w.a == 0 ? depthOnEdge(b, c) : w.b == 0 ? depthOnEdge(c, a) : depthOnEdge(a, b);
