@@ -7,6 +7,8 @@
 #   make SAN=address,undefined check      the same with sanitizers, in a build tree of its own
 #   make fuzz         the two fuzzers (clang), FUZZ_SECONDS each
 #   make bench        the measuring programs into bin/bench/
+#   make experiments  the schemes of the paper measured over PVM, into docs/experiments/ (20 minutes);
+#                     QUICK=1: small pictures, into BUILD/experiments (2 minutes)
 #
 # Sources find themselves: a new file needs no edit here.  Every program is linked from one library of the same
 # object files, so every program does the same arithmetic.  Only the PVM programs link libpvm3.
@@ -43,7 +45,7 @@ roles := host voxel-trace pyramid-trace shade
 programs := $(BIN)/rayshade $(BIN)/rayshade-error $(BIN)/spd $(roles:%=$(BIN)/rayshade-%)
 test_programs := $(BIN)/rayshade-tests $(BIN)/link-tests $(BIN)/pvm-tests
 
-.PHONY: all demo check test install fuzz bench format clean packages
+.PHONY: all demo check test install fuzz bench experiments format clean packages
 all: $(programs)
 
 $(BUILD)/%.o: %.cc
@@ -93,6 +95,9 @@ test: $(programs) $(test_programs)
 	@tests/support/run_tests $(BIN)
 
 bench: $(benches)
+
+experiments: all
+	@PYTHONDONTWRITEBYTECODE=1 tests/bench/experiments/run $(BIN) $(if $(QUICK),$(BUILD)/experiments --quick,docs/experiments)
 
 fuzz:
 	@tests/support/fuzz $(FUZZ_SECONDS)
