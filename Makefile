@@ -6,7 +6,8 @@
 #   make install PREFIX=/usr/local        programs into PREFIX/bin, and where `pvm` looks by convention
 #   make SAN=address,undefined check      the same with sanitizers, in a build tree of its own
 #   make fuzz         the two fuzzers (clang), FUZZ_SECONDS each
-#   make bench        the measuring programs into bin/bench/
+#   make bench        docs/speed-and-error.md: measures error against time (a quarter of an hour)
+#   make benches      the other measuring programs into bin/bench/
 #   make experiments  the schemes of the paper measured over PVM, into docs/experiments/ (20 minutes);
 #                     QUICK=1: small pictures, into BUILD/experiments (2 minutes)
 #
@@ -45,7 +46,7 @@ roles := host voxel-trace pyramid-trace shade
 programs := $(BIN)/rayshade $(BIN)/rayshade-error $(BIN)/spd $(roles:%=$(BIN)/rayshade-%)
 test_programs := $(BIN)/rayshade-tests $(BIN)/link-tests $(BIN)/pvm-tests
 
-.PHONY: all demo check test install fuzz bench experiments format clean packages
+.PHONY: all demo check test install fuzz bench benches experiments format clean packages
 all: $(programs)
 
 $(BUILD)/%.o: %.cc
@@ -94,7 +95,10 @@ check: packages
 test: $(programs) $(test_programs)
 	@tests/support/run_tests $(BIN)
 
-bench: $(benches)
+benches: $(benches)
+
+bench: $(BIN)/rayshade $(BIN)/rayshade-error $(BIN)/spd
+	@tests/bench/speed_and_error --bin $(BIN) docs
 
 experiments: all
 	@PYTHONDONTWRITEBYTECODE=1 tests/bench/experiments/run $(BIN) $(if $(QUICK),$(BUILD)/experiments --quick,docs/experiments)
