@@ -779,6 +779,12 @@ void examinePyramid(OracleReport& report, std::string_view name, std::uint64_t s
   std::vector<bool> listed(cellCount(c.tree));
   for (const CellId cell : list) listed[static_cast<std::size_t>(cell)] = true;
 
+  std::array<Point<Exact>, 4> inward;
+  for (std::size_t k = 0; k < 4; ++k) {
+    inward[k] = cross(Point<Exact>(corners[k]), Point<Exact>(corners[(k + 1) % 4]));
+    if (dot(inward[k], Point<Exact>(corners[(k + 2) % 4])) < 0) inward[k] = Exact(-1) * inward[k];
+  }
+
   Verdict verdict;
   for (int i = 0; i < 4; ++i) {
     Vec3 inside;
@@ -787,11 +793,7 @@ void examinePyramid(OracleReport& report, std::string_view name, std::uint64_t s
     const Vec3 p = i == 0 ? apex : apex + far * inside;
     const Point<Exact> from = Point<Exact>(p) - Point<Exact>(apex);
     bool within = true;
-    for (std::size_t k = 0; k < 4; ++k) {
-      const Point<Exact> a(corners[k]), b(corners[(k + 1) % 4]);
-      const Exact side = dot(cross(a, b), from), inner = dot(cross(a, b), Point<Exact>(corners[(k + 2) % 4]));
-      within = within && (side == 0 || (side > 0) == (inner > 0));
-    }
+    for (const Point<Exact>& side : inward) within = within && dot(side, from) >= 0;
     if (!within) continue;
     ++report.questions;
     std::uint32_t node = 0;

@@ -1,0 +1,256 @@
+// Speed and error of each kernel, beside the textbook formula in its place.
+//
+//   accuracy [RAYS]          TSV on standard output; 20 000 rays per kernel
+//
+// Shapes of about size 1 at the origin; rays come from 2 to 1e7 away (log-uniform) and aim at points in and around the shape, one in
+// four at an edge, a corner or a silhouette.  The truth is computed with 256 bits (tests/support/exact_geometry.h).
+//
+//   ns          processor time per ray, the best of several turns
+//   typical     median error of t, in units in the last place of the true t
+//   worst       largest error of t, likewise
+//   missed, phantom      per million rays: a hit that the kernel does not see, one that is not there
+//
+// The textbook formulas live here only.  Sources: sphere, cylinder, cone, box: Haines, and Kay & Kajiya, in Glassner, An Introduction
+// to Ray Tracing, 1989, and as in Rayshade 4; triangle: Möller & Trumbore, JGT 2(1), 1997; torus: the quartic of the ray
+// where it starts, solved by Ferrari's formula.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <complex>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <functional>
+
+#include "rayshade/base/random.h"
+#include "tests/support/exact_geometry.h"
+
+namespace rayshade {
+namespace {
+
+using exact::Exact;
+
+// ------------------------------------------------------------------------------------------- textbook formulas
+
+double firstOf(double a, double b) { return a > 0 ? a : b > 0 ? b : kNoHit; }
+
+double textbook(const Sphere& s, const LocalRay& ray) {
+  const Vec3 f = ray.origin - s.centre;
+  const double b = -dot(f, ray.direction), discriminant = b * b - dot(f, f) + s.radius * s.radius;
+  if (discriminant < 0) return kNoHit;
+  const double root = std::sqrt(discriminant);
+  return firstOf(b - root, b + root);
+}
+
+double textbook(const Box& box, const LocalRay& ray) {
+  double entry = -kInfinity, exit = kInfinity;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double inverse = 1 / ray.direction[axis];
+    const double a = (box.low[axis] - ray.origin[axis]) * inverse,
+                 b = (box.high[axis] - ray.origin[axis]) * inverse;
+    entry = std::max(entry, std::min(a, b));
+    exit = std::min(exit, std::max(a, b));
+  }
+  return entry <= exit ? firstOf(entry, exit) : kNoHit;
+}
+
+double textbook(const Plane& p, const LocalRay& ray) {
+  const double slope = dot(p.normal, ray.direction);
+  if (std::abs(slope) < 1e-5) return kNoHit;
+  const double t = (dot(p.normal, p.point) - dot(p.normal, ray.origin)) / slope;
+  return t > 0 ? t : kNoHit;
+}
+double textbook(const Disc& d, const LocalRay& ray) {
+  const double t = textbook(Plane{d.centre, d.normal}, ray);
+  const Vec3 from = ray.origin + t * ray.direction - d.centre;
+  return t < kNoHit && dot(from, from) <= d.radius * d.radius ? t : kNoHit;
+}
+
+double textbook(const Frustum& s, const LocalRay& ray) {
+  const Vec3 from = ray.origin - s.base;
+  const double height = dot(from, s.axis), climb = dot(ray.direction, s.axis);
+  const Vec3 f = from - height * s.axis, e = ray.direction - climb * s.axis;
+  const double there = s.radius + s.growth() * height, widening = s.growth() * climb;
+  const double a = dot(e, e) - widening * widening, b = dot(f, e) - there * widening,
+               c = dot(f, f) - there * there;
+  const double discriminant = b * b - a * c;
+  if (discriminant < 0) return kNoHit;
+  const double root = std::sqrt(discriminant);
+  double nearest = kNoHit;
+  for (const double t : {(-b - root) / a, (-b + root) / a})
+    if (t > 0 && t < nearest && height + t * climb >= 0 && height + t * climb <= s.length) nearest = t;
+  return nearest;
+}
+double textbook(const Cylinder& c, const LocalRay& ray) { return textbook(c.side, ray); }
+double textbook(const Cone& c, const LocalRay& ray) { return textbook(c.side, ray); }
+
+double textbook(const Triangle& t, const LocalRay& ray) {
+  const Vec3 first = t.corners[1] - t.corners[0], second = t.corners[2] - t.corners[0];
+  const Vec3 p = cross(ray.direction, second);
+  const double determinant = dot(first, p);
+  if (determinant == 0) return kNoHit;
+  const Vec3 from = ray.origin - t.corners[0];
+  const double u = dot(from, p) / determinant;
+  if (u < 0 || u > 1) return kNoHit;
+  const Vec3 q = cross(from, first);
+  const double v = dot(ray.direction, q) / determinant;
+  if (v < 0 || u + v > 1) return kNoHit;
+  const double at = dot(second, q) / determinant;
+  return at > 0 ? at : kNoHit;
+}
+
+double textbook(const Polygon& polygon,
+                const LocalRay& ray) {  // crossings of a half-line, along the largest axis
+  const double t = textbook(Plane{polygon.corners[0], polygon.normal}, ray);
+  if (t == kNoHit) return kNoHit;
+  const Vec3 p = ray.origin + t * ray.direction;
+  const int axis = dominantAxis(polygon.normal), x = (axis + 1) % 3, y = (axis + 2) % 3;
+  bool inside = false;
+  for (std::size_t i = 0, k = polygon.corners.size() - 1; i < polygon.corners.size(); k = i++) {
+    const Vec3 a = polygon.corners[i], b = polygon.corners[k];
+    if ((a[y] > p[y]) != (b[y] > p[y]) && p[x] < (b[x] - a[x]) * (p[y] - a[y]) / (b[y] - a[y]) + a[x])
+      inside = !inside;
+  }
+  return inside ? t : kNoHit;
+}
+
+double textbook(const Torus& torus, const LocalRay& ray) {  // axis z, centre at the origin; Ferrari
+  using Complex = std::complex<double>;
+  const Vec3 o = ray.origin, d = ray.direction;
+  const double od = dot(o, d), k = dot(o, o) + torus.swept * torus.swept - torus.tube * torus.tube;
+  const double four = 4 * torus.swept * torus.swept;
+  const double c3 = 4 * od, c2 = 4 * od * od + 2 * k - four * (d.x * d.x + d.y * d.y),
+               c1 = 4 * od * k - 2 * four * (o.x * d.x + o.y * d.y),
+               c0 = k * k - four * (o.x * o.x + o.y * o.y);
+  const double shift = c3 / 4, p = c2 - 6 * shift * shift,
+               q = c1 - 2 * c2 * shift + 8 * shift * shift * shift,
+               r = c0 - c1 * shift + c2 * shift * shift - 3 * shift * shift * shift * shift;
+  // A root m of 8 m^3 + 8 p m^2 + (2 p^2 - 8 r) m - q^2.
+  const Complex d0 = p * p + 12 * r, d1 = 2 * p * p * p + 27 * q * q - 72 * p * r;
+  const Complex cube = std::pow((d1 + std::sqrt(d1 * d1 - 4.0 * d0 * d0 * d0)) / 2.0, 1.0 / 3);
+  const Complex m = (cube + d0 / cube - 2 * p) / 6.0, s = std::sqrt(2.0 * m);
+  double nearest = kNoHit;
+  for (const double one : {1.0, -1.0})
+    for (const double two : {1.0, -1.0}) {
+      const Complex root = (one * s + two * std::sqrt(-(2 * p + 2.0 * m + one * 2 * q / s))) / 2.0 - shift;
+      if (std::abs(root.imag()) < 1e-9 * std::abs(root) && root.real() > 0)
+        nearest = std::min(nearest, root.real());
+    }
+  return nearest;
+}
+
+// ------------------------------------------------------------------------------------------------ measurement
+
+class Dice {
+ public:
+  double between(double low, double high) {
+    return low + (high - low) * uniform(RandomKey{++count_}, Dimension::lensX);
+  }
+  Vec3 direction() {
+    const double z = between(-1, 1), turn = between(0, 6.283185307), r = std::sqrt(1 - z * z);
+    return {r * std::cos(turn), r * std::sin(turn), z};
+  }
+
+ private:
+  std::uint64_t count_ = 0;
+};
+
+std::vector<LocalRay> raysAt(const std::vector<Vec3>& edges, std::size_t count) {
+  Dice dice;
+  std::vector<LocalRay> rays;
+  while (rays.size() < count) {
+    Vec3 target = std::cbrt(dice.between(0, 1)) * 1.2 * dice.direction();
+    if (!edges.empty() && rays.size() % 4 == 0) {
+      const auto i = static_cast<std::size_t>(dice.between(0, static_cast<double>(edges.size())));
+      const Vec3 a = edges[i], b = edges[(i + 1) % edges.size()];
+      target = a + (rays.size() % 8 == 0 ? 0 : dice.between(0, 1)) * (b - a);
+    }
+    const Vec3 origin = target + std::exp(dice.between(std::log(2), std::log(1e7))) * dice.direction();
+    rays.push_back({origin, normalize(target - origin)});
+  }
+  return rays;
+}
+
+template <class S>
+double truth(const S& shape, const LocalRay& ray) {
+  const exact::Line<Exact> line(ray);
+  Exact nearest(1e300);
+  for (const auto& part : exact::partsOf(shape))
+    for (const Exact& t : crossings(part, line))
+      if (t > 0 && t < nearest && siteAt(part, line, t).overshoot <= 0) nearest = t;
+  return nearest < Exact(1e299) ? static_cast<double>(nearest) : kNoHit;
+}
+
+struct Measured {
+  double ns, typical, worst, missed, phantom;
+};
+
+Measured measure(const std::vector<LocalRay>& rays, const std::vector<double>& truths,
+                 const std::function<void(std::vector<double>&)>& answer) {
+  std::vector<double> answers(rays.size());
+  double best = kInfinity;
+  for (int turn = 0; turn < 7; ++turn) {
+    const std::clock_t begin = std::clock();
+    for (int i = 0; i < 10; ++i) answer(answers);
+    best = std::min(best, static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC / 10);
+  }
+  std::vector<double> errors;
+  double missed = 0, phantom = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const bool hit = answers[i] < kNoHit, there = truths[i] < kNoHit;
+    missed += there && !hit;
+    phantom += hit && !there;
+    if (hit && there)
+      errors.push_back(std::abs(answers[i] - truths[i]) / (std::nextafter(truths[i], kInfinity) - truths[i]));
+  }
+  std::sort(errors.begin(), errors.end());
+  const double million = 1e6 / static_cast<double>(rays.size());
+  return {1e9 * best / static_cast<double>(rays.size()), errors.empty() ? 0 : errors[errors.size() / 2],
+          errors.empty() ? 0 : errors.back(), missed * million, phantom * million};
+}
+
+template <class S>
+void compare(const char* name, const S& shape, const std::vector<Vec3>& edges, std::size_t count) {
+  const std::vector<LocalRay> rays = raysAt(edges, count);
+  std::vector<double> truths;
+  for (const LocalRay& ray : rays) truths.push_back(truth(shape, ray));
+  const auto print = [&](const char* which, const Measured& m) {
+    std::printf("%s\t%s\t%.1f\t%.2f\t%.4g\t%.0f\t%.0f\n", name, which, m.ns, m.typical, m.worst, m.missed,
+                m.phantom);
+  };
+  print("ours", measure(rays, truths, [&](std::vector<double>& t) {
+          for (std::size_t i = 0; i < rays.size(); ++i) t[i] = shape.intersect(rays[i], 0);
+        }));
+  print("textbook", measure(rays, truths, [&](std::vector<double>& t) {
+          for (std::size_t i = 0; i < rays.size(); ++i) t[i] = textbook(shape, rays[i]);
+        }));
+  std::fflush(stdout);
+}
+
+void compareAll(std::size_t rays) {
+  const Vec3 tilted = normalize(Vec3{0.3, -0.5, 0.8});
+  const std::vector<Vec3> star{{1, 0.1, 0}, {0.2, 0.3, 0},   {0, 1, 0},   {-0.3, 0.2, 0},
+                               {-1, 0, 0},  {-0.2, -0.3, 0}, {0.1, -1, 0}};
+  Polygon polygon{star, {0, 0, 1}};
+  polygon.prepare();
+  const Triangle triangle{{Vec3{-0.9, -0.5, 0.1}, Vec3{0.8, -0.6, 0.3}, Vec3{0.1, 0.9, -0.4}}};
+  std::printf("kernel\tformula\tns\ttypical\tworst\tmissed\tphantom\n");
+  compare("sphere", Sphere{}, {{0, 1, 0}, {1, 0, 0}, {0, 0, 1}}, rays);
+  compare("box", Box{{-0.7, -0.6, -0.5}, {0.7, 0.8, 0.6}},
+          {{-0.7, -0.6, -0.5}, {0.7, -0.6, -0.5}, {0.7, 0.8, -0.5}, {0.7, 0.8, 0.6}}, rays);
+  compare("plane", Plane{{0.1, 0.2, 0.3}, tilted}, {}, rays);
+  compare("disc", Disc{{0, 0, 0}, tilted, 1}, {}, rays);
+  compare("cylinder", Cylinder{*frustumBetween({0, 0, -0.8}, 0.7, {0.1, 0.3, 0.8}, 0.7)}, {}, rays);
+  compare("cone", Cone{*frustumBetween({0, 0, 0.8}, 0, {0.1, 0.3, -0.8}, 0.7)},
+          {{0, 0, 0.8}, {0.1, 0.3, -0.1}}, rays);
+  compare("triangle", triangle, {triangle.corners.begin(), triangle.corners.end()}, rays);
+  compare("polygon", polygon, star, rays);
+  compare("torus", Torus{0.8, 0.25, {0, 0, 0}, {0, 0, 1}}, {}, rays / 4);
+}
+
+}  // namespace
+}  // namespace rayshade
+
+int main(int argc, char** argv) {
+  const long rays = argc > 1 ? std::atol(argv[1]) : 20000;
+  rayshade::compareAll(static_cast<std::size_t>(std::clamp(rays, 100L, 1000000L)));
+}
