@@ -10,15 +10,17 @@ namespace {
 
 // A cell is what is fetched at a time: small enough to be a part, large enough to be worth a message.
 constexpr std::uint64_t kObjectsPerCell = 2048;
+// Where nothing is fetched, cells only say where there is anything.
+constexpr std::uint64_t kObjectsPerBox = 16, kMostBoxes = 4096;
 
 }  // namespace
 
 Division divideSpace(Survey& survey, const Sight& sight, const HostOptions& options, std::uint32_t tasks) {
   const std::uint32_t voxels = tasks * std::max(1u, options.voxelsPerTask);
-  const auto bySize =
-      static_cast<std::uint32_t>(std::min<std::uint64_t>(survey.objects / kObjectsPerCell, 1 << 16));
   const bool fetches = options.wishes.pyramids > 0 || options.policy.shadows != ShadowPolicy::forward;
-  const std::uint32_t cells = options.cells > 0 ? options.cells : fetches ? bySize : voxels;
+  const std::uint64_t bySize = fetches ? std::min<std::uint64_t>(survey.objects / kObjectsPerCell, 1 << 16)
+                                       : std::min<std::uint64_t>(survey.objects / kObjectsPerBox, kMostBoxes);
+  const std::uint32_t cells = options.cells > 0 ? options.cells : static_cast<std::uint32_t>(bySize);
   Division division;
   std::vector<CostBox> costs;
   if (options.split == Split::cost)

@@ -8,7 +8,7 @@
 
 namespace rayshade {
 
-inline constexpr double kWorkSlice = 0.001;  // seconds of work between two looks at the link
+inline constexpr double kWorkSlice = 0.004;  // seconds of work between two looks at the link
 inline constexpr double kPatience = 1.0;     // seconds of sleep when nothing comes
 
 // A task has: receive(LinkEvent), bool work(until) that says whether anything is left to do, flush(), finished(),

@@ -10,8 +10,8 @@
 namespace rayshade {
 namespace {
 
-// With several clusters, so many samples in a row go to the same one.
-constexpr std::uint64_t kClusterRun = 64;
+// So many samples in a row go to the same task; with several clusters, to the same one.
+constexpr std::size_t kRun = 64;
 constexpr double kLoadEvery = 0.2;  // seconds
 
 }  // namespace
@@ -125,9 +125,7 @@ void HostTask::reconfigure() {
   summary_.startSeconds += machine_.now() - begin;
   // Samples that were on their way are issued again; they are pure, so the same bits come back.
   summary_.reissued += inFlight_.size();
-  std::map<std::uint64_t, SampleId> inOrder(inFlight_.begin(), inFlight_.end());
-  inFlight_.clear();
-  for (const auto& [serial, sample] : inOrder) again_.push_back(sample);
+  for (const SampleId& sample : inFlight_.takeAll()) again_.push_back(sample);
 }
 
 void HostTask::surveyAgain() {
@@ -155,13 +153,18 @@ void HostTask::ship() {
   if (targets.empty()) return;
   Shipping* shipping = nullptr;
   cellBytes_.assign(cellCount(tree_), 0);
+  cellContents_.assign(cellCount(tree_), Bounds{});
   std::vector<CellId> cells;
   ObjectStream stream(exposure_, [&](const SceneObject& object, const Bounds& bounds,
                                      std::span<const FrameItem* const> frames) {
     cells.clear();
     cellsTouching(tree_, bounds, cells);
     const auto bytes = static_cast<std::uint32_t>(Shipping::bytesOf(object));
-    for (CellId cell : cells) cellBytes_[static_cast<std::size_t>(cell)] += bytes;
+    for (CellId cell : cells) {
+      const auto at = static_cast<std::size_t>(cell);
+      cellBytes_[at] += bytes;
+      cellContents_[at] = join(cellContents_[at], contentOf(bounds, tree_, cell));
+    }
     shipping->object(object, bounds, frames);
   });
   Shipping pass(stream, tree_, directory_, targets, [&](std::uint32_t task, Items&& batch) {
@@ -197,6 +200,7 @@ bool HostTask::configure() {
                                        options_.policy,
                                        {*view_, *picture_, options_.seed},
                                        cellBytes_,
+                                       cellContents_,
                                        options_.dynamicShading ? kLoadEvery : 0.0});
   }
   outbox_.flush();
@@ -292,10 +296,8 @@ void HostTask::on(TaskId from, Report message) {
 void HostTask::on(TaskId, Pong) {}
 
 void HostTask::on(TaskId, Answer message) {
-  const auto found = inFlight_.find(message.record);
-  if (found == inFlight_.end() || sampler_ == nullptr) return;
-  sampler_->supply(found->second, message.color);
-  inFlight_.erase(found);
+  const std::optional<SampleId> sample = inFlight_.take(message.record);
+  if (sample && sampler_ != nullptr) sampler_->supply(*sample, message.color);
 }
 
 void HostTask::on(TaskId from, PyramidWanted) { wanting_.push_back(from); }
@@ -324,7 +326,9 @@ void HostTask::sendWeights() {
 // ---- the picture
 
 bool HostTask::nextSample(SampleId& sample) {
-  if (inFlight_.size() >= options_.window) return false;
+  // One that is slow must not let the others run away from it.
+  constexpr std::size_t kMostSpan = 64;  // windows
+  if (inFlight_.size() >= options_.window || inFlight_.span() >= kMostSpan * options_.window) return false;
   if (!again_.empty()) {
     sample = again_.front();
     again_.pop_front();
@@ -333,33 +337,37 @@ bool HostTask::nextSample(SampleId& sample) {
   return sampler_->next(sample);
 }
 
-// Data driven: every ray to the task of the voxel in which it begins.
-void HostTask::issueRays() {
+// The next samples, up to `most`, as one message.
+PrimaryRays HostTask::takeSamples(std::size_t most) {
+  PrimaryRays work;
+  work.firstRecord = inFlight_.next();
   SampleId sample;
-  while (nextSample(sample)) {
-    const std::uint64_t serial = serial_++;
-    inFlight_.emplace(serial, sample);
-    const SamplePosition position =
-        samplePosition(*picture_, options_.seed, static_cast<std::uint32_t>(exposure_.frame), sample);
-    RayTask task{primaryRay(*view_, position, exposure_.frame), 0, {machine_.self(), serial, 0}};
-    VoxelWalk walk(tree_, task.ray.origin, task.ray.direction);
+  while (work.samples.size() < most && nextSample(sample)) {
+    inFlight_.add(sample);
+    work.samples.push_back(sample);
+  }
+  return work;
+}
+
+// Data driven: to the task of the voxel in which the rays begin.  Rays of a lens may begin in another one: then they
+// are handed on there.
+void HostTask::issueRays() {
+  for (;;) {
+    const PrimaryRays work = takeSamples(kRun);
+    if (work.samples.empty()) return;
+    const Ray ray = primaryRay(Exhibition{*view_, *picture_, options_.seed}, exposure_, work.samples.front());
+    VoxelWalk walk(tree_, ray.origin, ray.direction);
     WalkStep<VoxelId> first;
     walk.next(first);
-    const auto cluster = static_cast<std::uint32_t>(serial / kClusterRun % directory_.clusters);
-    outbox_.post(directory_.ownerOf(first.where, cluster), task);
+    const auto cluster = static_cast<std::uint32_t>(runs_++ % directory_.clusters);
+    outbox_.post(directory_.ownerOf(first.where, cluster), work);
   }
 }
 
 // Demand driven: a tile for each pyramid task that asked.
 void HostTask::issuePyramids() {
   while (!wanting_.empty()) {
-    PyramidWork work;
-    work.firstRecord = serial_;
-    SampleId sample;
-    while (work.samples.size() < options_.tileSamples && nextSample(sample)) {
-      inFlight_.emplace(serial_++, sample);
-      work.samples.push_back(sample);
-    }
+    const PrimaryRays work = takeSamples(options_.tileSamples);
     if (work.samples.empty()) return;
     outbox_.post(wanting_.front(), work);
     wanting_.pop_front();
@@ -384,7 +392,7 @@ void HostTask::renderFrame(const View& view, const PictureSpec& picture, std::in
 
   Sampler sampler(picture, options_.seed, static_cast<std::uint32_t>(frame));
   sampler_ = &sampler;
-  inFlight_.clear();
+  inFlight_.takeAll();
   again_.clear();
   reconfigure();
   const double begin = machine_.now();
@@ -409,7 +417,7 @@ void HostTask::renderFrame(const View& view, const PictureSpec& picture, std::in
     takeEvents(1);
   }
   sampler_ = nullptr;
-  inFlight_.clear();
+  inFlight_.takeAll();
   summary_.traceSeconds += machine_.now() - begin;
 }
 

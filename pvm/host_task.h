@@ -1,7 +1,7 @@
 // The host task (Reinhard & Jansen, figure 2).
 //
-// It starts the slave tasks, decides who gets which part of the model and streams it to them, sends every primary ray to
-// the task of the voxel in which it begins, collects the colours, and hands the rows of the picture on as they are
+// It starts the slave tasks, decides who gets which part of the model and streams it to them, sends the samples of
+// the picture to the task of the voxel in which their rays begin, collects the colours, and hands the rows of the picture on as they are
 // finished.  It never holds the model.
 //
 // Work enters here only, at most `window` samples at a time; that bounds every queue and buffer of the system.  When
@@ -15,11 +15,13 @@
 #include <map>
 #include <stdexcept>
 
+#include "pvm/in_flight.h"
 #include "pvm/inbox.h"
 #include "pvm/process_mapping.h"
 #include "pvm/shipping.h"
 #include "rayshade/image/sampler.h"
 #include "rayshade/render.h"
+#include "rayshade/space/contents.h"
 #include "rayshade/space/survey.h"
 
 namespace rayshade {
@@ -123,6 +125,7 @@ class HostTask {
   void ship();
   bool configure();
   bool nextSample(SampleId& sample);
+  PrimaryRays takeSamples(std::size_t most);
   void issueRays();
   void issuePyramids();
   void handle(const LinkEvent& event);
@@ -155,12 +158,13 @@ class HostTask {
   const View* view_ = nullptr;  // of the frame that is rendered
   const PictureSpec* picture_ = nullptr;
   Sampler* sampler_ = nullptr;
-  std::unordered_map<std::uint64_t, SampleId> inFlight_;  // by serial number
-  std::deque<SampleId> again_;                            // were on their way when something died
-  std::deque<TaskId> wanting_;                            // pyramid tasks that asked for work
+  InFlight inFlight_;
+  std::deque<SampleId> again_;  // were on their way when something died
+  std::deque<TaskId> wanting_;  // pyramid tasks that asked for work
+  std::uint64_t runs_ = 0;      // of samples, sent to voxel tasks
   std::vector<std::uint32_t> cellBytes_;
+  std::vector<Bounds> cellContents_;
   double weighed_ = 0;  // when the weights of shade tasks were sent last
-  std::uint64_t serial_ = 0;
   HostSummary summary_;
 };
 

@@ -1,6 +1,6 @@
 // Packets in: decoding, the check of epochs, and one `on` per message.
 //
-// A task lists what it accepts, `using Accepted = TypeList<...>`, and has a member `on(TaskId from, M message)` for each;
+// A task lists what it accepts, `using Accepted = TypeList<...>`, and has a member `on(TaskId from, M&& message)` for each;
 // a message that is listed and not handled does not compile.  What is not listed, malformed or left over at the end of
 // a packet is refused and counted; so is work of another epoch.
 // SPDX-License-Identifier: BSD-3-Clause
@@ -37,6 +37,17 @@ bool deliver(Task& task, TaskId from, Epoch epoch, Reader& reader, Traffic& traf
   return true;
 }
 
+// By tag.
+template <class Task>
+struct Deliveries {
+  using Deliver = bool (*)(Task&, TaskId, Epoch, Reader&, Traffic&);
+  std::array<Deliver, AllMessages::size> of{};
+  constexpr Deliveries() {
+    std::size_t tag = 0;
+    AllMessages::forEach([&]<class M>() { of[tag++] = &deliver<M, Task>; });
+  }
+};
+
 }  // namespace inbox_detail
 
 template <class Task>
@@ -51,15 +62,11 @@ void receivePacket(Task& task, TaskId from, std::span<const std::byte> bytes, Tr
     ++traffic.refused;
     return;
   }
+  static constexpr inbox_detail::Deliveries<Task> kDeliveries;
   while (reader.left() > 0) {
     std::uint8_t tag = 0;
     reader(tag);
-    bool good = false;
-    std::uint8_t position = 0;
-    AllMessages::forEach([&]<class M>() {
-      if (position++ == tag) good = inbox_detail::deliver<M>(task, from, epoch, reader, traffic);
-    });
-    if (!good) {
+    if (tag >= kDeliveries.of.size() || !kDeliveries.of[tag](task, from, epoch, reader, traffic)) {
       ++traffic.refused;
       return;
     }

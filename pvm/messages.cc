@@ -14,40 +14,54 @@ bool isComplete(const Directory& d, const BinTree& tree) {
                      [&](std::uint32_t task) { return task < d.tasksPerCluster(); });
 }
 
-TaskId chooseShadeTask(const Directory& directory, RecordId record) {
+bool isComplete(const Configure& message) {
+  const std::size_t cells = cellCount(message.tree);
+  return isComplete(message.directory, message.tree) && message.cellBytes.size() == cells &&
+         message.cellContents.size() == cells && message.policy.outstanding > 0;
+}
+
+std::size_t chooseShadeTask(const Directory& directory, std::uint64_t serial) {
+  if (directory.shadeTasks.size() == 1) return 0;
   std::uint64_t sum = 0;
   for (std::uint32_t weight : directory.shadeWeights) sum += weight;
-  if (sum == 0) return directory.shadeTasks[record % directory.shadeTasks.size()];
-  std::uint64_t at = mixBits(record) % sum;
+  if (sum == 0) return serial % directory.shadeTasks.size();
+  std::uint64_t at = mixBits(serial) % sum;
   std::size_t i = 0;
   while (at >= directory.shadeWeights[i]) at -= directory.shadeWeights[i++];
-  return directory.shadeTasks[i];
+  return i;
 }
 
-Gathered gatheredFrom(const Expect& message) {
-  Gathered gathered;
-  gathered.light.resize(message.hit.lit.size());
-  std::size_t known = 0, pending = 0;
-  for (std::size_t point = 0; point < message.hit.lit.size(); ++point) {
-    if (message.hit.lit[point] != Lit::asked) continue;
-    if (pending < message.pending.size() && message.pending[pending] == point) {
-      ++pending;
-    } else {
-      gathered.light[point] = message.known[known++];
-    }
-  }
-  return gathered;
+Ray primaryRay(const Exhibition& exhibition, const Exposure& exposure, const SampleId& sample) {
+  const SamplePosition position =
+      samplePosition(exhibition.picture, exhibition.seed, static_cast<std::uint32_t>(exposure.frame), sample);
+  return primaryRay(exhibition.view, position, exposure.frame);
 }
 
-bool knownFits(const Expect& message) {
-  std::size_t asked = 0, pending = 0;
-  for (std::size_t point = 0; point < message.hit.lit.size(); ++point) {
-    if (message.hit.lit[point] > Lit::asked) return false;
-    if (message.hit.lit[point] != Lit::asked) continue;
-    ++asked;
-    if (pending < message.pending.size() && message.pending[pending] == point) ++pending;
-  }
-  return pending == message.pending.size() && asked == pending + message.known.size();
+bool samplesFit(const PrimaryRays& message, const PictureSpec& picture) {
+  const std::int32_t cells = picture.samplesPerSide * picture.samplesPerSide;
+  return !message.samples.empty() &&
+         std::all_of(message.samples.begin(), message.samples.end(),
+                     [cells](const SampleId& s) { return s.cell >= 0 && s.cell < cells; });
+}
+
+ShadowTravel travelOf(const ShadowRay& shadow, Slot slot, std::uint32_t step) {
+  return {slot,           step,        shadow.ray.origin,    shadow.ray.direction, shadow.distance,
+          shadow.through, shadow.last, shadow.insideExtinct, shadow.inside};
+}
+
+ShadowRay shadowOf(const ShadowHead& head, const ShadowTravel& travel) {
+  ShadowRay shadow;
+  shadow.ray.origin = travel.origin;
+  shadow.ray.direction = travel.direction;
+  shadow.ray.moment = head.moment;
+  shadow.ray.sample = head.sample;
+  shadow.ray.key = head.key;
+  shadow.distance = travel.distance;
+  shadow.through = travel.through;
+  shadow.last = travel.last;
+  shadow.insideExtinct = travel.insideExtinct;
+  shadow.inside = travel.inside;
+  return shadow;
 }
 
 std::uint64_t arithmeticFingerprint() {

@@ -27,6 +27,17 @@ using Slot = std::uint32_t;  // a light point, or one of these:
 inline constexpr Slot kTransmittedSlot = 0xfffffffeu;
 inline constexpr Slot kReflectedSlot = 0xffffffffu;
 
+// A shade task's records are numbered by whoever found the intersections: `finder` is his number among all tasks that
+// trace, `number` counts those of his records at this shade task that wait for something.
+inline constexpr int kNumberBits = 44;
+constexpr RecordId recordOf(std::uint32_t finder, std::uint64_t number) {
+  return static_cast<RecordId>(finder) << kNumberBits | number;
+}
+constexpr std::uint32_t finderOf(RecordId record) {
+  return static_cast<std::uint32_t>(record >> kNumberBits);
+}
+constexpr std::uint64_t numberOf(RecordId record) { return record & ((RecordId{1} << kNumberBits) - 1); }
+
 // The self-addressed envelope that travels with every ray.
 struct ReplyTo {
   TaskId task = kNobody;
@@ -49,11 +60,15 @@ struct Directory {
     return voxelTasks[cluster * tasksPerCluster() + voxels[static_cast<std::size_t>(voxel)]];
   }
 };
+// The tasks that trace, which number the intersections that they find: voxel tasks come first.
+inline std::size_t finderCount(const Directory& d) { return d.voxelTasks.size() + d.pyramidTasks.size(); }
 // Does it fit together, and has every voxel of the tree an owner?
 bool isComplete(const Directory& directory, const BinTree& tree);
+struct Configure;
+bool isComplete(const Configure& message);
 
-// The shade task for an intersection: any choice gives the same picture.
-TaskId chooseShadeTask(const Directory& directory, RecordId record);
+// Which shade task gets an intersection, the `serial`-th that a task finds: any choice gives the same picture.
+std::size_t chooseShadeTask(const Directory& directory, std::uint64_t serial);
 
 // How work is shared out between rays that travel and objects that do.
 enum class ShadowPolicy : std::uint8_t {
@@ -80,6 +95,9 @@ struct Exhibition {
   PictureSpec picture;
   std::uint64_t seed = 0;
 };
+
+// The primary ray of a sample.
+Ray primaryRay(const Exhibition& exhibition, const Exposure& exposure, const SampleId& sample);
 
 // ---- facts
 
@@ -111,6 +129,7 @@ struct Configure {
   DemandPolicy policy;
   Exhibition exhibition;
   std::vector<std::uint32_t> cellBytes;  // by cell: what its objects take on the wire; 0: there are none
+  std::vector<Bounds> cellContents;      // by cell: the box around what is in it, see Contents
   double loadEvery = 0;                  // seconds between two Loads; 0: none
 };
 
@@ -176,11 +195,43 @@ struct RayTask {
   ReplyTo to;
 };
 
+// How far a shadow ray has come on its way to a light point.
+struct ShadowTravel {
+  Slot slot = 0;  // the light point
+  std::uint32_t step = 0;
+  Vec3 origin, direction;
+  double distance = 0;     // of the light
+  Color through = kWhite;  // what has been let through so far; the rest as in ShadowRay
+  double last = 0, insideExtinct = 1;
+  bool inside = false;
+};
+
+// What shadow rays of one intersection have in common.
+struct ShadowHead {
+  TaskId shader = kNobody;  // who waits for their colours, in this record
+  RecordId record = 0;
+  Moment moment;
+  std::int32_t sample = 0;
+  RandomKey key{};
+};
+// Follow these shadow rays of one intersection.
 struct ShadowTask {
   static constexpr bool isFact = false;
-  ShadowRay shadow;
-  std::uint32_t step = 0;
-  ReplyTo to;
+  ShadowHead head;
+  InlineVector<ShadowTravel, 4> rays;  // at least one
+};
+ShadowTravel travelOf(const ShadowRay& shadow, Slot slot, std::uint32_t step);
+ShadowRay shadowOf(const ShadowHead& head, const ShadowTravel& travel);
+
+// Light that arrives at an intersection.
+struct LightAnswer {
+  Slot slot = 0;
+  Color color;
+};
+struct LightAnswers {
+  static constexpr bool isFact = false;
+  RecordId record = 0;
+  InlineVector<LightAnswer, 8> colors;
 };
 
 // To a shade task: an intersection whose colours will come, or have come, to `record`; its own colour goes to `to`.
@@ -188,30 +239,27 @@ struct ShadowTask {
 struct Expect {
   static constexpr bool isFact = false;
   RecordId record = 0;
-  Intersection hit;
-  InlineVector<Color, 8>
-      known;  // of the light points whose state is `asked` and `pending` does not name, in order
-  InlineVector<Slot, 8> pending;  // light points whose colour will come in an Answer, ascending
   ReplyTo to;
+  Intersection hit;
+  Gathered gathered;              // black where a colour is still to come
+  InlineVector<Slot, 8> pending;  // light points whose colour will come in LightAnswers, ascending
 };
-
-// The colours that came with an intersection, each in its place; those that are pending stay black.  Requires that they
-// fit, see knownFits().
-Gathered gatheredFrom(const Expect& message);
-// Do the lists of known and pending light points belong to this intersection?
-bool knownFits(const Expect& message);
 
 // From a pyramid task: it could do with a pyramid.
 struct PyramidWanted {
   static constexpr bool isFact = false;
 };
 
-// To a pyramid task: the samples of a tile.  Sample i is record firstRecord + i of the host.
-struct PyramidWork {
+// Follow the primary rays of these samples: to a pyramid task, the samples of a tile, which make one pyramid; to a
+// voxel-trace task, samples whose rays as a rule begin in its voxels.  Sample i is record firstRecord + i of the host.
+struct PrimaryRays {
   static constexpr bool isFact = false;
   RecordId firstRecord = 0;
   std::vector<SampleId> samples;
 };
+
+// Are there any, and are they samples of this picture?
+bool samplesFit(const PrimaryRays& message, const PictureSpec& picture);
 
 // From a task that traces with fetched cells, to the owner of the cell's voxel; and back.
 struct CellWanted {
@@ -235,9 +283,9 @@ struct Answer {
 // Append only: the position is the tag.
 using AllMessages =
     TypeList<Forget, Items, ItemsTaken, Configure, Ready, Finish, Report, Ping, Pong, RayTask, ShadowTask,
-             Expect, Answer, PyramidWanted, PyramidWork, CellWanted, CellItems, Load, Weights>;
+             Expect, Answer, PyramidWanted, PrimaryRays, CellWanted, CellItems, Load, Weights, LightAnswers>;
 
-inline constexpr std::uint8_t kWireVersion = 1;
+inline constexpr std::uint8_t kWireVersion = 2;
 
 // Does this machine compute the same bits as another?  A hash over results of the library functions that the pictures
 // depend on: their last bits differ between processors on which glibc chooses different code.
@@ -278,7 +326,7 @@ void serialize(Archive& archive, Exposure& e) {
 template <class Archive>
 void serialize(Archive& archive, Configure& m) {
   archive(m.epoch, m.setting, m.tree, m.directory, m.number, m.exposure, m.policy, m.exhibition, m.cellBytes,
-          m.loadEvery);
+          m.cellContents, m.loadEvery);
 }
 template <class Archive>
 void serialize(Archive& archive, Ready& m) {
@@ -300,30 +348,63 @@ template <class Archive>
 void serialize(Archive& archive, RayTask& m) {
   archive(m.ray, m.step, m.to);
 }
+// A list whose elements are `leastBytes` at least on the wire.
+template <class Archive, class T, std::size_t N, class Element>
+void serializeEach(Archive& archive, InlineVector<T, N>& list, std::size_t leastBytes, Element element) {
+  auto size = static_cast<std::uint32_t>(list.size());
+  archive(size);
+  if constexpr (Archive::kReading) {
+    list.clear();
+    if (size > archive.left() / leastBytes) return archive.fail();
+    for (std::uint32_t i = 0; i < size && archive.ok(); ++i) {
+      element(list.emplace_back());
+    }
+  } else {
+    for (T& value : list) element(value);
+  }
+}
 template <class Archive>
 void serialize(Archive& archive, ShadowTask& m) {
-  archive(m.shadow, m.step, m.to);
+  // As a rule all start at the same place.
+  Vec3 origin = m.rays.empty() ? Vec3{} : m.rays[0].origin;
+  ShadowHead& head = m.head;
+  archive(head.shader, head.record, head.key, origin);
+  serializeSparse(archive, Usual{head.moment.time, 0.0}, Usual{head.moment.frame, 0}, Usual{head.sample, 0});
+  serializeEach(archive, m.rays, 34, [&](ShadowTravel& r) {
+    archive(r.slot, r.step, r.direction);
+    serializeSparse(archive, Usual{r.origin, origin}, Usual{r.distance, kInfinity}, Usual{r.through, kWhite},
+                    Usual{r.last, 0.0}, Usual{r.insideExtinct, 1.0}, Usual{r.inside, false});
+  });
+}
+template <class Archive>
+void serialize(Archive& archive, LightAnswers& m) {
+  archive(m.record);
+  serializeEach(archive, m.colors, 5, [&](LightAnswer& answer) {
+    archive(answer.slot);
+    serializeCompact(archive, answer.color);
+  });
 }
 template <class Archive>
 void serialize(Archive& archive, Expect& m) {
-  archive(m.record, m.hit, m.pending, m.to);
-  std::uint32_t known = static_cast<std::uint32_t>(m.known.size());
-  archive(known);
-  if constexpr (Archive::kReading) {
-    m.known.clear();
-    for (std::uint32_t i = 0; i < known && archive.ok(); ++i) {
-      Color color;
-      serializeCompact(archive, color);
-      m.known.push_back(color);
+  archive(m.record, m.to, m.hit, m.pending);
+  if constexpr (Archive::kReading) m.gathered.light.resize(m.hit.lit.size());
+  std::size_t pending = 0;
+  for (std::size_t point = 0; point < m.hit.lit.size(); ++point) {
+    if (m.hit.lit[point] != Lit::asked) continue;
+    if (pending < m.pending.size() && m.pending[pending] == point) {
+      ++pending;
+    } else {
+      serializeCompact(archive, m.gathered.light[point]);
     }
-  } else {
-    for (Color& color : m.known) serializeCompact(archive, color);
   }
+  // Each pending point is one that was asked for, in order.
+  if constexpr (Archive::kReading)
+    if (pending != m.pending.size()) archive.fail();
 }
 template <class Archive>
 void serialize(Archive&, PyramidWanted&) {}
 template <class Archive>
-void serialize(Archive& archive, PyramidWork& m) {
+void serialize(Archive& archive, PrimaryRays& m) {
   archive(m.firstRecord, m.samples);
 }
 template <class Archive>

@@ -19,14 +19,14 @@ struct Traffic {
 class Outbox {
  public:
   static constexpr std::size_t kFull = 48 * 1024;  // bytes; leaves room for a last large message below 64 KB
+  static constexpr std::size_t kRoom = 4 * 1024;   // for the last message, as a rule
 
   explicit Outbox(Link& link) : link_(link) {}
 
   template <class M>
   void post(TaskId to, const M& message) {
     Open& open = packetTo(to);
-    Writer writer(open.bytes);
-    writer(static_cast<std::uint8_t>(PositionIn<M, AllMessages>::value), message);
+    Writer{open.bytes}(static_cast<std::uint8_t>(PositionIn<M, AllMessages>::value), message);
     ++traffic.messagesOut;
     if (open.bytes.size() >= kFull) send(open);
   }
@@ -57,8 +57,8 @@ class Outbox {
       last_->to = to;
     }
     if (last_->bytes.empty()) {
-      Writer writer(last_->bytes);
-      writer(kWireVersion, epoch_);
+      last_->bytes.reserve(kFull + kRoom);
+      Writer{last_->bytes}(kWireVersion, epoch_);
     }
     return *last_;
   }

@@ -21,7 +21,7 @@ double distanceTo(const Bounds& box, Vec3 p) {
 }  // namespace
 
 void PyramidTask::on(TaskId from, Configure message) {
-  if (!isComplete(message.directory, message.tree) || message.cellBytes.size() != cellCount(message.tree)) {
+  if (!isComplete(message)) {
     ++desk_.outbox.traffic.refused;
     return;
   }
@@ -37,8 +37,10 @@ void PyramidTask::on(TaskId from, Configure message) {
   parked_.clear();
   const std::uint32_t clusters = message.directory.clusters;
   const auto base = static_cast<std::uint32_t>(message.directory.voxelTasks.size()) + message.number;
+  Contents contents(message.tree, message.cellContents);
   worker_.begin({std::move(message.setting), std::move(message.tree), std::move(message.directory),
-                 message.number % clusters, message.exposure, message.policy, std::move(message.cellBytes)},
+                 message.number % clusters, message.exposure, message.policy, std::move(message.cellBytes),
+                 std::move(contents)},
                 base);
   desk_.link.connect(worker_.at().directory.voxelTasks);
   desk_.link.connect(worker_.at().directory.shadeTasks);
@@ -136,12 +138,9 @@ std::size_t PyramidTask::beforeHorizon(const std::vector<CellId>& cells, std::si
   return n;
 }
 
-void PyramidTask::on(TaskId, PyramidWork message) {
+void PyramidTask::on(TaskId, PrimaryRays message) {
   const PictureSpec& picture = exhibition_.picture;
-  const std::int32_t cellsOfPixel = picture.samplesPerSide * picture.samplesPerSide;
-  if (message.samples.empty() ||
-      std::any_of(message.samples.begin(), message.samples.end(),
-                  [&](const SampleId& s) { return s.cell < 0 || s.cell >= cellsOfPixel; })) {
+  if (!samplesFit(message, picture)) {
     ++desk_.outbox.traffic.refused;
     return;
   }

@@ -15,7 +15,7 @@ namespace rayshade {
 
 class PyramidTask : public GroundSource {
  public:
-  using Accepted = TypeList<Configure, Finish, Ping, Weights, PyramidWork, CellItems>;
+  using Accepted = TypeList<Configure, Finish, Ping, Weights, PrimaryRays, CellItems>;
   static constexpr int kAhead =
       4;  // pyramids asked for at a time: some are traced while others wait for cells
 
@@ -32,12 +32,15 @@ class PyramidTask : public GroundSource {
   void on(TaskId from, Finish);
   void on(TaskId from, Ping);
   void on(TaskId from, Weights message);
-  void on(TaskId from, PyramidWork message);
+  void on(TaskId from, PrimaryRays message);
   void on(TaskId from, CellItems message);
 
   // For primary rays: what is on the list of their pyramid is here.
   Ground voxel(VoxelId) override { return {}; }
   Ground cell(CellId cell) override;
+  bool mayMeet(VoxelId voxel, const Ray& ray, double tMin, double tMax) override {
+    return worker_.mayMeet(voxel, ray, tMin, tMax);
+  }
 
  private:
   struct Tile {

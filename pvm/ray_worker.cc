@@ -11,11 +11,12 @@ constexpr double kExpectedUses = 64;
 
 }  // namespace
 
-void RayWorker::begin(TraceSetting setting, std::uint32_t recordBase) {
+void RayWorker::begin(TraceSetting setting, std::uint32_t finder) {
   at_ = std::move(setting);
-  at_.cellBytes.resize(cellCount(at_.tree));
-  recordBase_ = recordBase;
+  finder_ = finder;
+  numbers_.assign(at_.directory.shadeTasks.size(), 0);
   occluders_.assign(lightPointCount(at_.setting), {});
+  visitorOccluders_.assign(lightPointCount(at_.setting), kNone);
   parked_.clear();
   parkedCount_ = 0;
   asked_.clear();
@@ -55,9 +56,27 @@ bool RayWorker::fetchingPays(CellId missing, std::size_t rays) const {
          kBytesPerForward * kExpectedUses * static_cast<double>(rays);
 }
 
-void RayWorker::forward(const Pending& pending, const Bundle& bundle, const LocalProgress& progress) {
-  desk_.outbox.post(at_.ownerOf(progress.voxel),
-                    ShadowTask{pending.shadow, progress.step, {bundle.shader, bundle.record, pending.slot}});
+void RayWorker::follow(const ShadowHead& head, std::span<const ShadowTravel> rays, const Model& model,
+                       const VoxelSource& voxels) {
+  onward_.begin(head);
+  settled_.record = head.record;
+  settled_.colors.clear();
+  for (const ShadowTravel& travel : rays) {
+    ShadowRay shadow = shadowOf(head, travel);
+    const bool hinted = travel.slot < visitorOccluders_.size();  // else it is no light point of this scene
+    if (hinted) shadow.occluder = visitorOccluders_[travel.slot];
+    const Progress progress =
+        followShadow(at_.tree, model, voxels, shadow, travel.step, at_.setting, counts_);
+    if (hinted) visitorOccluders_[travel.slot] = shadow.occluder;
+    if (progress.state == Progress::State::elsewhere) {
+      onward_.add(at_.ownerOf(progress.voxel), travelOf(shadow, travel.slot, progress.step));
+    } else {
+      settled_.colors.push_back(
+          {travel.slot, progress.state == Progress::State::hit ? kBlack : shadow.through});
+    }
+  }
+  onward_.post(desk_.outbox);
+  if (!settled_.colors.empty()) desk_.outbox.post(head.shader, settled_);
 }
 
 // The rays of the bundle have all met something that is not here: decide, for the bundle as a whole, what to do.
@@ -76,7 +95,7 @@ void RayWorker::traceBundle(Bundle&& bundle, const LightSource& light) {
   for (Pending& pending : bundle.rays) {
     const LocalProgress at =
         followLocally(at_.tree, *this, pending.shadow, pending.unit, at_.setting, counts_);
-    forward(pending, bundle, at);
+    onward_.add(at_.ownerOf(at.voxel), travelOf(pending.shadow, pending.slot, at.step));
   }
 }
 
@@ -113,20 +132,21 @@ bool RayWorker::take(CellItems&& message) {
 // Goes on with a bundle; those rays that miss something again wait for it together.
 void RayWorker::resume(Bundle&& bundle) {
   std::map<std::uint32_t, Bundle> missing;  // by cell
+  settled_.record = bundle.head.record;
+  settled_.colors.clear();
   for (Pending& pending : bundle.rays) {
     const LocalProgress progress =
         followLocally(at_.tree, *this, pending.shadow, pending.unit, at_.setting, counts_);
     if (progress.state == LocalProgress::State::missing) {
-      Bundle& rest = missing
-                         .try_emplace(static_cast<std::uint32_t>(progress.cell),
-                                      Bundle{{}, bundle.shader, bundle.record})
+      Bundle& rest = missing.try_emplace(static_cast<std::uint32_t>(progress.cell), Bundle{bundle.head, {}})
                          .first->second;
       rest.rays.push_back(std::move(pending));
     } else {
-      answer({bundle.shader, bundle.record, pending.slot},
-             progress.state == LocalProgress::State::hit ? kBlack : pending.shadow.through);
+      settled_.colors.push_back(
+          {pending.slot, progress.state == LocalProgress::State::hit ? kBlack : pending.shadow.through});
     }
   }
+  if (!settled_.colors.empty()) desk_.outbox.post(bundle.head.shader, settled_);
   for (auto& [cell, rest] : missing) park(std::move(rest), CellId{cell}, nullptr);
 }
 

@@ -16,6 +16,7 @@
 #include "pvm/task_desk.h"
 #include "rayshade/shading/evaluate.h"
 #include "rayshade/space/clip_list.h"
+#include "rayshade/space/contents.h"
 
 namespace rayshade {
 
@@ -28,6 +29,7 @@ struct TraceSetting {
   Exposure exposure;
   DemandPolicy policy;
   std::vector<std::uint32_t> cellBytes;
+  Contents contents;
 
   TaskId ownerOf(VoxelId voxel) const { return directory.ownerOf(voxel, cluster); }
 };
@@ -39,13 +41,47 @@ class OwnVoxels {
   virtual Ground own(VoxelId voxel) const = 0;
 };
 
+// Shadow rays of one intersection that go on elsewhere: one message for each task.
+class Onward {
+ public:
+  void begin(const ShadowHead& head) {
+    head_ = head;
+    used_ = 0;
+  }
+  void add(TaskId to, const ShadowTravel& travel) {
+    std::size_t i = 0;
+    while (i < used_ && open_[i].to != to) ++i;
+    if (i == used_) {
+      if (used_ == open_.size()) open_.emplace_back();
+      ++used_;
+      open_[i].to = to;
+      open_[i].task.head = head_;
+      open_[i].task.rays.clear();
+    }
+    open_[i].task.rays.push_back(travel);
+  }
+  void post(Outbox& outbox) {
+    for (std::size_t i = 0; i < used_; ++i) outbox.post(open_[i].to, open_[i].task);
+    used_ = 0;
+  }
+
+ private:
+  struct Open {
+    TaskId to = kNobody;
+    ShadowTask task;
+  };
+  ShadowHead head_;
+  std::vector<Open> open_;  // the first `used_` of them
+  std::size_t used_ = 0;
+};
+
 class RayWorker : public GroundSource {
  public:
   // `own`: null for a task that holds no voxels.
   RayWorker(TaskDesk& desk, const OwnVoxels* own) : desk_(desk), own_(own) {}
 
-  // A new epoch: everything that waits is dropped.  `recordBase` sets the records of this task apart from others'.
-  void begin(TraceSetting setting, std::uint32_t recordBase);
+  // A new epoch: everything that waits is dropped.  `finder`: this task's number among those that find intersections.
+  void begin(TraceSetting setting, std::uint32_t finder);
 
   void setWeights(std::vector<std::uint32_t> weights) {
     if (weights.size() == at_.directory.shadeTasks.size()) at_.directory.shadeWeights = std::move(weights);
@@ -66,6 +102,10 @@ class RayWorker : public GroundSource {
     desk_.outbox.post(to.task, Answer{to.record, to.slot, color});
   }
 
+  // Follows shadow rays that have come from elsewhere through this task's own voxels.
+  void follow(const ShadowHead& head, std::span<const ShadowTravel> rays, const Model& model,
+              const VoxelSource& voxels);
+
   // Asks for a cell unless it is here or asked for already.
   void want(CellId cell);
   bool isEmpty(CellId cell) const { return at_.cellBytes[static_cast<std::size_t>(cell)] == 0; }
@@ -76,6 +116,9 @@ class RayWorker : public GroundSource {
 
   Ground voxel(VoxelId voxel) override { return own_ == nullptr ? Ground{} : own_->own(voxel); }
   Ground cell(CellId cell) override;
+  bool mayMeet(VoxelId voxel, const Ray& ray, double tMin, double tMax) override {
+    return at_.contents.mayMeet(voxel, ray.origin, ray.direction, tMin, tMax);
+  }
 
  private:
   struct Pending {  // a shadow ray on its way
@@ -84,9 +127,8 @@ class RayWorker : public GroundSource {
     Slot slot = 0;
   };
   struct Bundle {  // of one light and one hit
+    ShadowHead head;
     std::vector<Pending> rays;
-    TaskId shader = kNobody;
-    RecordId record = 0;
   };
 
   // What stopped the last shadow ray to a light point: asked first, which can't change the answer.
@@ -98,7 +140,6 @@ class RayWorker : public GroundSource {
   void traceBundle(Bundle&& bundle, const LightSource& light);
   void park(Bundle&& bundle, CellId missing, const LightSource* light);
   bool fetchingPays(CellId missing, std::size_t rays) const;
-  void forward(const Pending& pending, const Bundle& bundle, const LocalProgress& progress);
   void resume(Bundle&& bundle);
   void askMore();
 
@@ -109,11 +150,15 @@ class RayWorker : public GroundSource {
   CacheCounts shadowCounts_;
   ObjectCache cache_;
   Model noModel_;
-  Region nothing_;                   // of an empty cell
-  std::vector<Occluder> occluders_;  // by light point
+  Region nothing_;                             // of an empty cell
+  std::vector<Occluder> occluders_;            // by light point; of rays that begin here
+  std::vector<ObjectIndex> visitorOccluders_;  // the same of rays from elsewhere
+  Onward onward_;
+  LightAnswers settled_;
 
-  std::uint32_t recordBase_ = 0;
+  std::uint32_t finder_ = 0;
   std::uint64_t serial_ = 0;                                       // of the next intersection found here
+  std::vector<std::uint64_t> numbers_;                             // of the next record at each shade task
   std::unordered_map<std::uint32_t, std::vector<Bundle>> parked_;  // by the cell they wait for
   std::size_t parkedCount_ = 0;
   std::uint64_t combined_ = 0;
@@ -126,41 +171,55 @@ template <class Queue>
 void RayWorker::shade(const Ray& ray, const ReplyTo& to, const Hit& hit, const Model& model, Queue queue) {
   const SurfacePoint at = evaluateSurface(model, hit, ray, at_.setting);
   Secondary spawned = spawnSecondary(ray, at, at_.setting);
+  const std::size_t chosen = chooseShadeTask(at_.directory, serial_++);
+  const TaskId shader = at_.directory.shadeTasks[chosen];
   Expect expect;
-  expect.record = static_cast<RecordId>(recordBase_) << 44 | (serial_++ & 0xfffffffffffu);
+  expect.record = recordOf(finder_, numbers_[chosen]);
   expect.to = to;
-  const TaskId shader = chooseShadeTask(at_.directory, expect.record);
+  expect.gathered.light.resize(spawned.lit.size());
+  const ShadowHead head{shader, expect.record, ray.moment, ray.sample, ray.key};
+  onward_.begin(head);
 
   // Shadow rays first: those that are settled without leaving this task travel with the intersection.
   std::size_t point = 0;
-  for (std::size_t l = 0; l < at_.setting.lights.size(); ++l) {
-    const std::size_t end = point + static_cast<std::size_t>(pointsOf(at_.setting.lights[l]));
-    Bundle bundle{{}, shader, expect.record};
+  for (const LightSource& light : at_.setting.lights) {
+    const std::size_t end = point + static_cast<std::size_t>(pointsOf(light));
+    Bundle bundle;
     for (; point < end; ++point) {
       if (spawned.lit[point] != Lit::asked) continue;
       ++counts_.shadowRays;
-      Pending pending{shadowRay(ray, at, spawned.samples[point]), 0, static_cast<Slot>(point)};
+      const auto slot = static_cast<Slot>(point);
+      ShadowRay shadow = shadowRay(ray, at, spawned.samples[point]);
       Occluder& occluder = occluders_[point];
-      pending.shadow.occluder = occluder.object;
-      pending.shadow.occluderGround = occluder.ground;
-      const LocalProgress progress =
-          followLocally(at_.tree, *this, pending.shadow, pending.unit, at_.setting, counts_);
-      occluder = {pending.shadow.occluder, pending.shadow.occluderGround};
-      if (progress.state == LocalProgress::State::missing) {
-        expect.pending.push_back(pending.slot);
-        bundle.rays.push_back(std::move(pending));
+      shadow.occluder = occluder.object;
+      shadow.occluderGround = occluder.ground;
+      std::uint32_t unit = 0;
+      const LocalProgress progress = followLocally(at_.tree, *this, shadow, unit, at_.setting, counts_);
+      occluder = {shadow.occluder, shadow.occluderGround};
+      if (progress.state != LocalProgress::State::missing) {
+        expect.gathered.light[point] = progress.state == LocalProgress::State::hit ? kBlack : shadow.through;
+        continue;
+      }
+      expect.pending.push_back(slot);
+      if (at_.policy.shadows == ShadowPolicy::forward) {
+        onward_.add(at_.ownerOf(progress.voxel), travelOf(shadow, slot, progress.step));
       } else {
-        expect.known.push_back(progress.state == LocalProgress::State::hit ? kBlack : pending.shadow.through);
+        bundle.rays.push_back({std::move(shadow), unit, slot});
       }
     }
-    if (!bundle.rays.empty()) traceBundle(std::move(bundle), at_.setting.lights[l]);
+    if (bundle.rays.empty()) continue;
+    bundle.head = head;
+    traceBundle(std::move(bundle), light);
   }
+  onward_.post(desk_.outbox);
   expect.hit = describe(ray, hit.t, at, spawned, at_.setting);
-  if (at_.policy.shadeAtOnce && expect.pending.empty() && !spawned.transmitted && !spawned.reflected) {
+  const bool complete = expect.pending.empty() && !spawned.transmitted && !spawned.reflected;
+  if (complete && at_.policy.shadeAtOnce) {
     ++combined_;
-    answer(to, combine(expect.hit, gatheredFrom(expect), at_.setting, spawned.samples));
+    answer(to, combine(expect.hit, expect.gathered, at_.setting, spawned.samples));
     return;
   }
+  if (!complete) ++numbers_[chosen];
   desk_.outbox.post(shader, expect);
   if (spawned.transmitted) {
     ++counts_.transmittedRays;

@@ -4,56 +4,101 @@
 #include <algorithm>
 
 namespace rayshade {
-ShadeLedger::Verdict ShadeLedger::expect(Expect&& message, Settled& out) {
-  if (message.hit.lit.size() != lightPoints_ || !knownFits(message)) return Verdict::refused;
-  Gathered gathered = gatheredFrom(message);
-  // Most intersections come with all their colours.
-  const bool complete = message.pending.empty() && !message.hit.transmitted && !message.hit.reflected;
-  if (complete) {
-    out = {message.hit, gathered, message.to};
+
+void ShadeLedger::begin(std::size_t lightPoints, std::size_t finders) {
+  lightPoints_ = lightPoints;
+  rings_.assign(finders, {});
+  records_.clear();
+  free_.clear();
+  settled_ = &complete_;
+  open_ = 0;
+}
+
+// The record of that number, opened if it was not yet; null when it is closed or cannot be.
+ShadeLedger::Record* ShadeLedger::find(RecordId id) {
+  const std::uint32_t finder = finderOf(id);
+  const std::uint64_t number = numberOf(id);
+  if (finder >= rings_.size()) return nullptr;
+  Ring& ring = rings_[finder];
+  if (number < ring.first || number - ring.first >= kFarthest) return nullptr;
+  const std::uint64_t at = number - ring.first;
+  if (at >= ring.places.size()) ring.places.resize(at + 1, kUnopened);
+  std::uint32_t& place = ring.places[at];
+  if (place == kClosed) return nullptr;
+  if (place == kUnopened) {
+    if (free_.empty()) {
+      free_.push_back(static_cast<std::uint32_t>(records_.size()));
+      records_.emplace_back();
+    }
+    place = free_.back();
+    free_.pop_back();
+    records_[place].expected = false;
+    records_[place].early.clear();
+    ++open_;
+  }
+  return &records_[place];
+}
+
+ShadeLedger::Verdict ShadeLedger::expect(Expect&& message) {
+  if (message.hit.lit.size() != lightPoints_ ||
+      std::any_of(message.hit.lit.begin(), message.hit.lit.end(), [](Lit lit) { return lit > Lit::asked; }))
+    return Verdict::refused;
+  // Many intersections come with all their colours.
+  if (message.pending.empty() && !message.hit.transmitted && !message.hit.reflected) {
+    complete_ = {std::move(message.hit), std::move(message.gathered), message.to};
+    settled_ = &complete_;
     return Verdict::settled;
   }
-  const RecordId id = message.record;
-  Record& record = records_[id];
-  if (record.expected) return Verdict::refused;
-  record.gathered = std::move(gathered);
-  record.missing.assign(message.pending.begin(), message.pending.end());
-  if (message.hit.transmitted) record.missing.push_back(kTransmittedSlot);
-  if (message.hit.reflected) record.missing.push_back(kReflectedSlot);
-  record.expected = std::move(message);
-  for (const Answer& answer : record.early) fill(record, answer);
-  record.early.clear();
-  return conclude(id, record, out);
+  Record* record = find(message.record);
+  if (record == nullptr || record->expected) return Verdict::refused;
+  record->expected = true;
+  record->missing = message.pending;
+  if (message.hit.transmitted) record->missing.push_back(kTransmittedSlot);
+  if (message.hit.reflected) record->missing.push_back(kReflectedSlot);
+  record->settled = {std::move(message.hit), std::move(message.gathered), message.to};
+  for (const LightAnswer& answer : record->early) fill(*record, answer.slot, answer.color);
+  return conclude(message.record, *record);
 }
 
-ShadeLedger::Verdict ShadeLedger::arrive(const Answer& message, Settled& out) {
-  Record& record = records_[message.record];
-  if (!record.expected) {
-    record.early.push_back(message);
+ShadeLedger::Verdict ShadeLedger::arrive(RecordId id, Slot slot, Color color) {
+  Record* record = find(id);
+  if (record == nullptr) return Verdict::refused;
+  if (!record->expected) {
+    record->early.push_back({slot, color});
     return Verdict::waiting;
   }
-  if (!fill(record, message)) return Verdict::refused;
-  return conclude(message.record, record, out);
+  if (!fill(*record, slot, color)) return Verdict::refused;
+  return conclude(id, *record);
 }
 
-bool ShadeLedger::fill(Record& record, const Answer& answer) {
-  const auto slot = std::find(record.missing.begin(), record.missing.end(), answer.slot);
-  if (slot == record.missing.end()) return false;
-  record.missing.erase(slot);
-  if (answer.slot == kTransmittedSlot) {
-    record.gathered.transmitted = answer.color;
-  } else if (answer.slot == kReflectedSlot) {
-    record.gathered.reflected = answer.color;
+bool ShadeLedger::fill(Record& record, Slot slot, Color color) {
+  Slot* const at = std::find(record.missing.begin(), record.missing.end(), slot);
+  if (at == record.missing.end()) return false;
+  *at = record.missing[record.missing.size() - 1];
+  record.missing.pop_back();
+  Gathered& gathered = record.settled.gathered;
+  if (slot == kTransmittedSlot) {
+    gathered.transmitted = color;
+  } else if (slot == kReflectedSlot) {
+    gathered.reflected = color;
   } else {
-    record.gathered.light[answer.slot] = answer.color;
+    gathered.light[slot] = color;
   }
   return true;
 }
 
-ShadeLedger::Verdict ShadeLedger::conclude(RecordId id, Record& record, Settled& out) {
+ShadeLedger::Verdict ShadeLedger::conclude(RecordId id, Record& record) {
   if (!record.missing.empty()) return Verdict::waiting;
-  out = {std::move(record.expected->hit), std::move(record.gathered), record.expected->to};
-  records_.erase(id);
+  settled_ = &record.settled;
+  Ring& ring = rings_[finderOf(id)];
+  std::uint32_t& place = ring.places[numberOf(id) - ring.first];
+  free_.push_back(place);
+  place = kClosed;
+  --open_;
+  while (!ring.places.empty() && ring.places.front() == kClosed) {
+    ring.places.pop_front();
+    ++ring.first;
+  }
   return Verdict::settled;
 }
 

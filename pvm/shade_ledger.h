@@ -4,11 +4,13 @@
 // order between one pair of tasks only, so a colour can even overtake its intersection: a record is opened by whichever
 // comes first.  It is closed when every slot that the intersection names is filled - slots are filled by name, so
 // arrival decides when, never what.
+//
+// The tasks that find intersections number them one by one, so a record's place follows from its number: a ring for each
+// such task, no hash.  See recordOf().
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <optional>
-#include <unordered_map>
+#include <deque>
 
 #include "pvm/messages.h"
 
@@ -24,29 +26,43 @@ class ShadeLedger {
  public:
   enum class Verdict : std::uint8_t { waiting, settled, refused };
 
-  // `lightPoints`: how many an intersection must have.
-  void begin(std::size_t lightPoints) {
-    records_.clear();
-    lightPoints_ = lightPoints;
-  }
+  // `lightPoints`: how many an intersection must have.  `finders`: how many tasks find intersections.
+  void begin(std::size_t lightPoints, std::size_t finders);
 
-  // Verdict::settled: `out` has everything and the record is closed.  refused: the message makes no sense here.
-  Verdict expect(Expect&& message, Settled& out);
-  Verdict arrive(const Answer& message, Settled& out);
+  // Verdict::settled: settled() has everything and the record is closed.  refused: the message makes no sense here.
+  Verdict expect(Expect&& message);
+  Verdict arrive(RecordId record, Slot slot, Color color);
 
-  std::size_t open() const { return records_.size(); }
+  // What was settled last, until the next call.
+  const Settled& settled() const { return *settled_; }
+  std::size_t open() const { return open_; }
 
  private:
-  struct Record {
-    std::optional<Expect> expected;
-    Gathered gathered;
-    std::vector<Slot> missing;  // once expected
-    std::vector<Answer> early;  // until then
-  };
-  bool fill(Record& record, const Answer& answer);
-  Verdict conclude(RecordId id, Record& record, Settled& out);
+  static constexpr std::uint32_t kFarthest = 1u << 22;  // numbers ahead of the oldest open record
+  static constexpr std::uint32_t kUnopened = 0xffffffffu, kClosed = 0xfffffffeu;
 
-  std::unordered_map<RecordId, Record> records_;
+  struct Record {
+    Settled settled;
+    bool expected = false;
+    InlineVector<Slot, 8> missing;   // once expected
+    std::vector<LightAnswer> early;  // until then
+  };
+  // Positions in records_, in the order of numbers from `first` on.
+  struct Ring {
+    std::uint64_t first = 0;
+    std::deque<std::uint32_t> places;
+  };
+
+  Record* find(RecordId id);
+  Verdict conclude(RecordId id, Record& record);
+  static bool fill(Record& record, Slot slot, Color color);
+
+  std::vector<Ring> rings_;          // by finder
+  std::deque<Record> records_;       // stay where they are, and are used again
+  std::vector<std::uint32_t> free_;  // of records_
+  Settled complete_;                 // an intersection that came with all its colours
+  const Settled* settled_ = &complete_;
+  std::size_t open_ = 0;
   std::size_t lightPoints_ = 0;
 };
 

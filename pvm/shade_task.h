@@ -12,7 +12,7 @@ namespace rayshade {
 
 class ShadeTask {
  public:
-  using Accepted = TypeList<Configure, Finish, Ping, Expect, Answer>;
+  using Accepted = TypeList<Configure, Finish, Ping, Expect, Answer, LightAnswers>;
 
   explicit ShadeTask(Link& link) : desk_(link) {}
 
@@ -26,11 +26,12 @@ class ShadeTask {
   void on(TaskId from, Configure message);
   void on(TaskId from, Finish);
   void on(TaskId from, Ping);
-  void on(TaskId from, Expect message);
-  void on(TaskId from, Answer message);
+  void on(TaskId from, Expect&& message);
+  void on(TaskId from, const Answer& message);
+  void on(TaskId from, const LightAnswers& message);
 
  private:
-  void act(ShadeLedger::Verdict verdict, const Settled& settled);
+  void act(ShadeLedger::Verdict verdict);
 
   TaskDesk desk_;
   Setting setting_;

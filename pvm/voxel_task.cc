@@ -12,10 +12,17 @@ void VoxelTask::on(TaskId, Forget) {
   model_.emplace();
   itemsAreNew_ = true;
   desk_.epoch = Epoch{};
+  dropWork();
+  regions_.clear();
+}
+
+void VoxelTask::dropWork() {
+  primaries_.clear();
+  waitingSamples_ = 0;
   raysByDepth_.clear();
   waitingRays_ = 0;
   shadows_.clear();
-  regions_.clear();
+  shadowRays_.clear();
 }
 
 void VoxelTask::on(TaskId from, Items message) {
@@ -26,21 +33,21 @@ void VoxelTask::on(TaskId from, Items message) {
 
 void VoxelTask::on(TaskId from, Configure message) {
   const Directory& directory = message.directory;
-  if (!isComplete(directory, message.tree) || message.number >= directory.voxelTasks.size() ||
-      message.cellBytes.size() != cellCount(message.tree)) {
+  if (!isComplete(message) || message.number >= directory.voxelTasks.size()) {
     ++desk_.outbox.traffic.refused;
     return;
   }
   desk_.outbox.beginEpoch(message.epoch);
   desk_.epoch = message.epoch;
   desk_.reportLoad(from, message.loadEvery);
-  raysByDepth_.clear();
-  waitingRays_ = 0;
-  shadows_.clear();
+  dropWork();
+  host_ = from;
+  exhibition_ = message.exhibition;
   number_ = message.number % directory.tasksPerCluster();
   const std::uint32_t cluster = message.number / directory.tasksPerCluster();
+  Contents contents(message.tree, message.cellContents);
   worker_.begin({std::move(message.setting), std::move(message.tree), std::move(message.directory), cluster,
-                 message.exposure, message.policy, std::move(message.cellBytes)},
+                 message.exposure, message.policy, std::move(message.cellBytes), std::move(contents)},
                 message.number);
   desk_.link.connect(worker_.at().directory.voxelTasks);
   desk_.link.connect(worker_.at().directory.shadeTasks);
@@ -138,16 +145,26 @@ void VoxelTask::on(TaskId from, Ping) {
   desk_.outbox.flush();
 }
 
-void VoxelTask::on(TaskId, RayTask task) { queue(std::move(task)); }
-void VoxelTask::on(TaskId, ShadowTask task) {
-  shadows_.push_back(std::move(task));
+void VoxelTask::on(TaskId, PrimaryRays&& work) {
+  if (!samplesFit(work, exhibition_.picture)) {
+    ++desk_.outbox.traffic.refused;
+    return;
+  }
+  waitingSamples_ += work.samples.size();
+  primaries_.push_back({std::move(work), 0});
+  desk_.notePeak(waiting());
+}
+void VoxelTask::on(TaskId, RayTask&& task) { queue(std::move(task)); }
+void VoxelTask::on(TaskId, const ShadowTask& task) {
+  shadows_.push_back({task.head, static_cast<std::uint32_t>(task.rays.size())});
+  shadowRays_.insert(shadowRays_.end(), task.rays.begin(), task.rays.end());
   desk_.notePeak(waiting());
 }
 
 const Region* VoxelTask::find(VoxelId voxel) const { return regions_[static_cast<std::size_t>(voxel)].get(); }
 Ground VoxelTask::own(VoxelId voxel) const { return {&*model_, find(voxel)}; }
 
-void VoxelTask::queue(RayTask task) {
+void VoxelTask::queue(RayTask&& task) {
   constexpr int kDepths = 64;  // deeper ones share the last queue
   const auto depth = static_cast<std::size_t>(std::clamp(task.ray.depth, 0, kDepths - 1));
   if (depth >= raysByDepth_.size()) raysByDepth_.resize(depth + 1);
@@ -160,9 +177,7 @@ bool VoxelTask::work(double until) {
   constexpr int kBetweenLooksAtTheClock = 16;
   for (int done = 1;; ++done) {
     if (!shadows_.empty()) {
-      ShadowTask task = std::move(shadows_.back());
-      shadows_.pop_back();
-      trace(task);
+      traceShadows();
     } else if (waitingRays_ > 0) {
       std::size_t depth = raysByDepth_.size() - 1;
       while (raysByDepth_[depth].empty()) --depth;
@@ -170,6 +185,8 @@ bool VoxelTask::work(double until) {
       raysByDepth_[depth].pop_back();
       --waitingRays_;
       trace(task);
+    } else if (!primaries_.empty()) {
+      tracePrimary();
     } else {
       return false;
     }
@@ -195,22 +212,23 @@ void VoxelTask::trace(RayTask& task) {
   }
 }
 
-void VoxelTask::trace(ShadowTask& task) {
-  const TraceSetting& at = worker_.at();
-  const Progress progress =
-      followShadow(at.tree, *model_, *this, task.shadow, task.step, at.setting, worker_.counts());
-  switch (progress.state) {
-    case Progress::State::hit:
-      worker_.answer(task.to, kBlack);
-      break;
-    case Progress::State::left:
-      worker_.answer(task.to, task.shadow.through);
-      break;
-    case Progress::State::elsewhere:
-      task.step = progress.step;
-      desk_.outbox.post(at.ownerOf(progress.voxel), task);
-      break;
-  }
+void VoxelTask::tracePrimary() {
+  Primaries& primaries = primaries_.front();
+  RayTask task;
+  task.ray = primaryRay(exhibition_, worker_.at().exposure, primaries.work.samples[primaries.next]);
+  task.to = {host_, primaries.work.firstRecord + primaries.next, 0};
+  ++worker_.counts().primaryRays;
+  --waitingSamples_;
+  if (++primaries.next == primaries.work.samples.size()) primaries_.pop_front();
+  trace(task);
+}
+
+void VoxelTask::traceShadows() {
+  const Shadows shadows = shadows_.back();
+  shadows_.pop_back();
+  const std::size_t first = shadowRays_.size() - shadows.rays;
+  worker_.follow(shadows.head, std::span(shadowRays_).subspan(first), *model_, *this);
+  shadowRays_.resize(first);
 }
 
 }  // namespace rayshade

@@ -15,8 +15,8 @@ namespace rayshade {
 
 class VoxelTask : public VoxelSource, public OwnVoxels {
  public:
-  using Accepted =
-      TypeList<Forget, Items, Configure, Finish, Ping, Weights, RayTask, ShadowTask, CellWanted, CellItems>;
+  using Accepted = TypeList<Forget, Items, Configure, Finish, Ping, Weights, PrimaryRays, RayTask, ShadowTask,
+                            CellWanted, CellItems>;
 
   explicit VoxelTask(Link& link) : desk_(link), worker_(desk_, this) {}
 
@@ -33,21 +33,36 @@ class VoxelTask : public VoxelSource, public OwnVoxels {
   void on(TaskId from, Configure message);
   void on(TaskId from, Finish);
   void on(TaskId from, Ping);
-  void on(TaskId from, RayTask task);
-  void on(TaskId from, ShadowTask task);
+  void on(TaskId from, PrimaryRays&& work);
+  void on(TaskId from, RayTask&& task);
+  void on(TaskId from, const ShadowTask& task);
   void on(TaskId from, Weights message);
   void on(TaskId from, CellWanted message);
   void on(TaskId from, CellItems message);
 
   const Region* find(VoxelId voxel) const override;
+  bool mayMeet(VoxelId voxel, const Ray& ray, double tMin, double tMax) const override {
+    return worker_.at().contents.mayMeet(voxel, ray.origin, ray.direction, tMin, tMax);
+  }
   Ground own(VoxelId voxel) const override;
-  std::uint64_t waiting() const { return waitingRays_ + shadows_.size(); }
+  std::uint64_t waiting() const { return waitingSamples_ + waitingRays_ + shadows_.size(); }
 
  private:
   void buildRegions();
+  struct Primaries {
+    PrimaryRays work;
+    std::size_t next = 0;  // sample
+  };
+  struct Shadows {
+    ShadowHead head;
+    std::uint32_t rays = 0;  // of those in shadowRays_
+  };
+
+  void dropWork();
+  void traceShadows();
+  void tracePrimary();
   void trace(RayTask& task);
-  void trace(ShadowTask& task);
-  void queue(RayTask task);
+  void queue(RayTask&& task);
 
   TaskDesk desk_;
   RayWorker worker_;
@@ -60,9 +75,14 @@ class VoxelTask : public VoxelSource, public OwnVoxels {
   std::map<std::uint32_t, std::vector<ObjectIndex>> cellObjects_;  // made when somebody asks for a cell
   std::uint64_t cellsServed_ = 0;
 
+  TaskId host_ = kNobody;
+  Exhibition exhibition_;
+  std::deque<Primaries> primaries_;  // their rays are made when there is nothing deeper to do
+  std::uint64_t waitingSamples_ = 0;
   std::vector<std::vector<RayTask>> raysByDepth_;
   std::uint64_t waitingRays_ = 0;
-  std::vector<ShadowTask> shadows_;
+  std::vector<Shadows> shadows_;          // last in, first out
+  std::vector<ShadowTravel> shadowRays_;  // of all of them, in the same order
 };
 
 }  // namespace rayshade

@@ -11,10 +11,10 @@ constexpr std::uint32_t kOwnGround = 0xffffffffu;  // in place of the number of 
 
 // Walks until `visit(ground, tExit)` is true, the scene or `limit` is left, or something is not at hand.
 template <class Visit>
-LocalProgress walkLocally(const BinTree& tree, GroundSource& source, Vec3 origin, Vec3 direction,
-                          double limit, std::uint32_t& unit, Visit visit) {
+LocalProgress walkLocally(const BinTree& tree, GroundSource& source, const Ray& ray, double limit,
+                          std::uint32_t& unit, Visit visit) {
   std::uint32_t passed = 0;
-  VoxelWalk voxels(tree, origin, direction);
+  VoxelWalk voxels(tree, ray.origin, ray.direction);
   std::optional<CellWalk> cells;  // begun when the first voxel is met that is not one's own
   WalkStep<CellId> cell;
   bool cellIsSet = false;
@@ -27,8 +27,9 @@ LocalProgress walkLocally(const BinTree& tree, GroundSource& source, Vec3 origin
         return {LocalProgress::State::hit, {}, own.model, {}, step.where, i};
       continue;
     }
+    if (!source.mayMeet(step.where, ray, step.tEnter, std::min(step.tExit, limit))) continue;
     if (!cells) {
-      cells.emplace(tree, origin, direction);
+      cells.emplace(tree, ray.origin, ray.direction);
       cellIsSet = cells->next(cell);
     }
     while (cellIsSet && voxelOfCell(tree, cell.where) != step.where) cellIsSet = cells->next(cell);
@@ -55,13 +56,13 @@ LocalProgress walkLocally(const BinTree& tree, GroundSource& source, Vec3 origin
 LocalProgress followLocally(const BinTree& tree, GroundSource& source, const Ray& ray, std::uint32_t& unit,
                             TraceCounts& counts) {
   Hit hit;
-  LocalProgress progress = walkLocally(tree, source, ray.origin, ray.direction, kInfinity, unit,
-                                       [&](const Ground& ground, std::uint32_t, double tExit) {
-                                         ++counts.visits;
-                                         hit = visit(*ground.model, *ground.region, ray, 0, tExit);
-                                         counts.tests += hit.tests;
-                                         return hit.found();
-                                       });
+  LocalProgress progress =
+      walkLocally(tree, source, ray, kInfinity, unit, [&](const Ground& ground, std::uint32_t, double tExit) {
+        ++counts.visits;
+        hit = visit(*ground.model, *ground.region, ray, 0, tExit);
+        counts.tests += hit.tests;
+        return hit.found();
+      });
   progress.hit = hit;
   if (hit.found()) ++counts.hits;
   return progress;
@@ -69,7 +70,7 @@ LocalProgress followLocally(const BinTree& tree, GroundSource& source, const Ray
 
 LocalProgress followLocally(const BinTree& tree, GroundSource& source, ShadowRay& shadow, std::uint32_t& unit,
                             const Setting& setting, TraceCounts& counts) {
-  return walkLocally(tree, source, shadow.ray.origin, shadow.ray.direction, shadow.distance, unit,
+  return walkLocally(tree, source, shadow.ray, shadow.distance, unit,
                      [&](const Ground& ground, std::uint32_t id, double tExit) {
                        ++counts.visits;
                        // What stopped the ray before counts in the model that it belongs to.

@@ -10,7 +10,10 @@ Progress followRay(const BinTree& tree, const Model& model, const VoxelSource& v
   for (std::uint32_t i = 0; walk.next(at); ++i) {
     if (i < step) continue;
     const Region* region = voxels.find(at.where);
-    if (region == nullptr) return {Progress::State::elsewhere, {}, at.where, i};
+    if (region == nullptr) {
+      if (!voxels.mayMeet(at.where, ray, at.tEnter, at.tExit)) continue;
+      return {Progress::State::elsewhere, {}, at.where, i};
+    }
     ++counts.visits;
     const Hit hit = visit(model, *region, ray, 0, at.tExit);
     counts.tests += hit.tests;
@@ -29,7 +32,10 @@ Progress followShadow(const BinTree& tree, const Model& model, const VoxelSource
   for (std::uint32_t i = 0; walk.next(at) && at.tEnter < shadow.distance; ++i) {
     if (i < step) continue;
     const Region* region = voxels.find(at.where);
-    if (region == nullptr) return {Progress::State::elsewhere, {}, at.where, i};
+    if (region == nullptr) {
+      if (!voxels.mayMeet(at.where, shadow.ray, at.tEnter, std::min(at.tExit, shadow.distance))) continue;
+      return {Progress::State::elsewhere, {}, at.where, i};
+    }
     ++counts.visits;
     const std::uint32_t before = shadow.tests;
     const bool passes = passShadow(model, *region, shadow, at.tExit, setting);

@@ -40,6 +40,8 @@ class VoxelSource {
  public:
   virtual ~VoxelSource() = default;
   virtual const Region* find(VoxelId voxel) const = 0;
+  // Could the ray meet something at t in [tMin, tMax] in a voxel that is not at hand?  Yes, if nothing is known.
+  virtual bool mayMeet(VoxelId, const Ray&, double /*tMin*/, double /*tMax*/) const { return true; }
 };
 
 struct Progress {

@@ -10,11 +10,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -25,7 +27,20 @@
 
 namespace rayshade {
 
-using Bytes = std::vector<std::byte>;
+// Leaves new elements as they are: a Writer makes room and then fills it.
+template <class T>
+struct NoFill : std::allocator<T> {
+  template <class U>
+  struct rebind {
+    using other = NoFill<U>;
+  };
+  template <class U, class... A>
+  void construct(U* at, A&&... from) {
+    if constexpr (sizeof...(A) > 0) ::new (static_cast<void*>(at)) U(std::forward<A>(from)...);
+  }
+};
+
+using Bytes = std::vector<std::byte, NoFill<std::byte>>;
 
 template <class T>
 concept PlainNumber = std::is_arithmetic_v<T> || std::is_enum_v<T>;
@@ -33,19 +48,21 @@ concept PlainNumber = std::is_arithmetic_v<T> || std::is_enum_v<T>;
 static_assert(std::endian::native == std::endian::little,
               "archive.h copies numbers as they lie in memory; a big-endian machine needs a byte swap here");
 
+// Appends to `out`, which has its final size when the Writer is gone; nobody else may touch it before.
 class Writer {
  public:
   static constexpr bool kReading = false;
 
-  explicit Writer(Bytes& out) : out_(out) {}
+  explicit Writer(Bytes& out) : out_(out), used_(out.size()) { out_.resize(out_.capacity()); }
+  Writer(const Writer&) = delete;
+  Writer& operator=(const Writer&) = delete;
+  ~Writer() { out_.resize(used_); }
 
   template <class... T>
   void operator()(const T&... values) {
     if constexpr ((PlainNumber<T> && ...)) {
       // Numbers in a row are made room for once: most of what travels is points, directions and colours.
-      const std::size_t at = out_.size();
-      out_.resize(at + (sizeof(T) + ... + 0));
-      std::byte* to = out_.data() + at;
+      std::byte* to = room((sizeof(T) + ... + 0));
       ((std::memcpy(to, &values, sizeof values), to += sizeof values), ...);
     } else {
       (put(values), ...);
@@ -53,10 +70,19 @@ class Writer {
   }
 
  private:
+  std::byte* room(std::size_t size) {
+    const std::size_t at = used_;
+    used_ += size;
+    if (used_ > out_.size()) grow();
+    return out_.data() + at;
+  }
+  [[gnu::noinline]] void grow() {
+    out_.reserve(std::max(2 * out_.size(), used_));
+    out_.resize(out_.capacity());
+  }
   void raw(const void* from, std::size_t size) {
-    const std::size_t at = out_.size();
-    out_.resize(at + size);
-    std::memcpy(out_.data() + at, from, size);
+    std::byte* to = room(size);
+    if (size > 0) std::memcpy(to, from, size);
   }
   template <PlainNumber T>
   void put(const T& value) {
@@ -67,8 +93,8 @@ class Writer {
     putCount(text.size());
     raw(text.data(), text.size());
   }
-  template <class T>
-  void put(const std::vector<T>& list) {
+  template <class T, class Allocator>
+  void put(const std::vector<T, Allocator>& list) {
     putCount(list.size());
     if constexpr (PlainNumber<T> && !std::is_same_v<T, bool>) {
       if (!list.empty()) raw(list.data(), list.size() * sizeof(T));
@@ -97,6 +123,7 @@ class Writer {
   }
 
   Bytes& out_;
+  std::size_t used_;
 };
 
 class Reader {
@@ -163,8 +190,8 @@ class Reader {
     text.resize(count(1));
     if (!text.empty()) raw(text.data(), text.size());
   }
-  template <class T>
-  void get(std::vector<T>& list) {
+  template <class T, class Allocator>
+  void get(std::vector<T, Allocator>& list) {
     list.clear();
     if constexpr (PlainNumber<T> && !std::is_same_v<T, bool>) {
       list.resize(count(sizeof(T)));
@@ -251,8 +278,7 @@ void serializeSparse(Archive& archive, Usual<T>... field) {
 template <class T>
 Bytes encode(const T& value) {
   Bytes out;
-  Writer writer(out);
-  writer(value);
+  Writer{out}(value);
   return out;
 }
 

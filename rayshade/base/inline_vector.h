@@ -5,10 +5,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace rayshade {
@@ -19,6 +21,25 @@ class InlineVector {
 
  public:
   InlineVector() = default;
+  // Only what is there is copied.
+  InlineVector(const InlineVector& from) : size_(from.size_), outside_(from.outside_) { copyInside(from); }
+  InlineVector(InlineVector&& from) noexcept : size_(from.size_), outside_(std::move(from.outside_)) {
+    copyInside(from);
+    from.clear();
+  }
+  InlineVector& operator=(const InlineVector& from) {
+    size_ = from.size_;
+    outside_ = from.outside_;
+    copyInside(from);
+    return *this;
+  }
+  InlineVector& operator=(InlineVector&& from) noexcept {
+    size_ = from.size_;
+    outside_ = std::move(from.outside_);
+    copyInside(from);
+    if (this != &from) from.clear();
+    return *this;
+  }
   explicit InlineVector(std::size_t size, T value = T{}) { resize(size, value); }
 
   std::size_t size() const { return size_; }
@@ -32,7 +53,13 @@ class InlineVector {
   T& operator[](std::size_t i) { return data()[i]; }
   const T& operator[](std::size_t i) const { return data()[i]; }
 
-  void push_back(T value) {
+  // A new element at the end, to be filled in.
+  T& emplace_back() {
+    if (size_ < N) return inside_.elements[size_++] = T{};
+    push_back(T{});
+    return outside_.back();
+  }
+  void push_back(const T& value) {
     if (size_ < N) {
       inside_.elements[size_] = value;
     } else {
@@ -40,6 +67,13 @@ class InlineVector {
       outside_.push_back(value);
     }
     ++size_;
+  }
+  void pop_back() {
+    if (size_ > N) outside_.pop_back();
+    if (--size_ == N) {
+      std::copy(outside_.begin(), outside_.end(), inside_.elements.begin());
+      outside_.clear();
+    }
   }
   void resize(std::size_t size, T value = T{}) {
     clear();
@@ -56,6 +90,10 @@ class InlineVector {
   }
 
  private:
+  void copyInside(const InlineVector& from) {
+    if (size_ <= N) std::copy_n(from.inside_.elements.begin(), size_, inside_.elements.begin());
+  }
+
   std::size_t size_ = 0;
   // Elements begin when they are put in: clearing room for all N would take longer than most uses.
   union Room {

@@ -47,8 +47,7 @@ void ObjectStream::note(FrameId id) { statement_.mentioned = std::max(statement_
 
 void ObjectStream::spool(const Item& item, Spool& to) {
   scratch_.clear();
-  Writer writer(scratch_);
-  writer(std::uint32_t{0}, item);
+  Writer{scratch_}(std::uint32_t{0}, item);
   const auto size = static_cast<std::uint32_t>(scratch_.size() - sizeof(std::uint32_t));
   std::memcpy(scratch_.data(), &size, sizeof size);
   to.append(scratch_);

@@ -56,9 +56,10 @@ RenderedByTasks renderSplit(const Job& job, const Splitting& split) {
 }
 
 // Every ray is traced once wherever it is, so that the tasks together count what one process counts over the same
-// voxels.  With adaptive sampling the host guesses ahead: it may trace samples that are not needed in the end.
+// voxels, but for the visits to voxels of others in which a ray could meet nothing.  With adaptive sampling the host
+// guesses ahead: it may trace samples that are not needed in the end.
 void expectSameWork(const TraceCounts& sequential, const TraceCounts& tasks) {
-  EXPECT_EQ(tasks.visits, sequential.visits);
+  EXPECT_LE(tasks.visits, sequential.visits);
   EXPECT_EQ(tasks.hits, sequential.hits);
   EXPECT_EQ(tasks.shadowRays, sequential.shadowRays);
   EXPECT_EQ(tasks.reflectedRays, sequential.reflectedRays);

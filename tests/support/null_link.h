@@ -6,7 +6,7 @@
 
 namespace rayshade {
 
-class NullLink final : public Link {
+class NullLink : public Link {
  public:
   TaskId self() const override { return TaskId{2}; }
   TaskId parent() const override { return TaskId{1}; }

@@ -56,8 +56,7 @@ TEST(Messages, DecodedAndEncodedAgainTheyHaveTheSameBytes) {
     reader(version, epoch);
     ASSERT_EQ(version, kWireVersion);
     Bytes again;
-    Writer writer(again);
-    writer(version, epoch);
+    Writer{again}(version, epoch);
     while (reader.left() > 0) {
       std::uint8_t tag = 0;
       reader(tag);
@@ -67,7 +66,7 @@ TEST(Messages, DecodedAndEncodedAgainTheyHaveTheSameBytes) {
         seen.insert(tag);
         M message{};
         reader(message);
-        writer(tag, message);
+        Writer{again}(tag, message);
       });
       ASSERT_TRUE(reader.ok()) << "message " << static_cast<int>(tag);
     }
@@ -79,7 +78,7 @@ TEST(Messages, DecodedAndEncodedAgainTheyHaveTheSameBytes) {
         PositionIn<Report, AllMessages>::value, PositionIn<RayTask, AllMessages>::value,
         PositionIn<ShadowTask, AllMessages>::value, PositionIn<Expect, AllMessages>::value,
         PositionIn<Answer, AllMessages>::value, PositionIn<PyramidWanted, AllMessages>::value,
-        PositionIn<PyramidWork, AllMessages>::value, PositionIn<CellWanted, AllMessages>::value,
+        PositionIn<PrimaryRays, AllMessages>::value, PositionIn<CellWanted, AllMessages>::value,
         PositionIn<CellItems, AllMessages>::value})
     EXPECT_TRUE(seen.contains(tag)) << "message " << tag << " never travelled";
 }

@@ -399,8 +399,7 @@ TEST(HeightField, comesBackFromTheWireWithItsQuadtree) {
 
 TEST(HeightField, aMessageWithTheWrongNumberOfHeightsIsRefused) {
   Bytes bytes;
-  Writer writer(bytes);
-  writer(std::int32_t{3}, std::vector<float>(8, 0.0f));
+  Writer{bytes}(std::int32_t{3}, std::vector<float>(8, 0.0f));
   EXPECT_FALSE(decode<HeightField>(bytes));
   EXPECT_EQ(HeightField{}.intersect(down(0.5, 0.5), 0), kNoHit);
 }

@@ -88,10 +88,9 @@ TEST(WireFormat, TheExampleIsWhatTheCodeWrites) {
   receivePacket(receiver, TaskId{1}, bytes, traffic);
   ASSERT_EQ(receiver.rays.size() + receiver.answers.size(), 3u);
   Bytes again;
-  Writer writer(again);
-  writer(kWireVersion, Epoch{2});
-  auto write = [&writer]<class M>(const M& message) {
-    writer(static_cast<std::uint8_t>(PositionIn<M, AllMessages>::value), message);
+  Writer{again}(kWireVersion, Epoch{2});
+  auto write = [&again]<class M>(const M& message) {
+    Writer{again}(static_cast<std::uint8_t>(PositionIn<M, AllMessages>::value), message);
   };
   write(receiver.rays[0]);
   write(receiver.answers[0]);

@@ -1,0 +1,159 @@
+// What it costs to say something: each kind of message of the inner loop, put into a packet, taken out again and handled.
+//
+//   bin/bench/message_bench            nanoseconds and bytes a message, without the link itself (see link_bench)
+// SPDX-License-Identifier: BSD-3-Clause
+#include <benchmark/benchmark.h>
+
+#include "pvm/inbox.h"
+#include "pvm/shade_task.h"
+#include "tests/support/null_link.h"
+
+namespace rayshade {
+namespace {
+
+constexpr std::size_t kMessages = 256;  // in a packet
+
+// Keeps what a task sends.
+class KeepingLink : public NullLink {
+ public:
+  void send(TaskId, std::span<const std::byte> packet) override {
+    sent.emplace_back(packet.begin(), packet.end());
+  }
+  std::vector<Bytes> sent;
+};
+
+struct Sink {
+  using Accepted = TypeList<RayTask, ShadowTask, Answer, LightAnswers, Expect>;
+  Epoch epoch() const { return Epoch{1}; }
+  template <class M>
+  void on(TaskId, M&& message) {
+    benchmark::DoNotOptimize(&message);
+  }
+};
+
+RayTask rayTask() {
+  RayTask task;
+  task.ray.origin = {1, 2, 3};
+  task.ray.direction = {0.6, 0.8, 0};
+  task.ray.depth = 1;
+  task.ray.contribution = {.3, .3, .3};
+  task.to = {TaskId{7}, 12345, kReflectedSlot};
+  return task;
+}
+
+ShadowTask shadowTask() {
+  ShadowTask task;
+  task.head.shader = TaskId{7};
+  task.head.record = 12345;
+  for (Slot slot = 0; slot < 2; ++slot)
+    task.rays.push_back({slot, 1, {1, 2, 3}, {0.6, 0.8, 0}, 12.5, kWhite, 0, 1, false});
+  return task;
+}
+
+// Three lights, of which one is dark and `pending` are awaited.
+Expect expectation(RecordId record, std::size_t pending, bool reflected) {
+  Expect e;
+  e.record = record;
+  e.to = {TaskId{3}, 77, 0};
+  e.hit.position = {1, 2, 3};
+  e.hit.direction = {0.6, 0.8, 0};
+  e.hit.normal = {0, 0, 1};
+  e.hit.surface.diffuse = {.5, .45, .35};
+  e.hit.surface.specular = {.5, .5, .5};
+  e.hit.lit.resize(3);
+  e.gathered.light.resize(3);
+  for (std::size_t i = 0; i < 3; ++i) e.hit.lit[i] = Lit::asked;
+  for (std::size_t i = 0; i < pending; ++i) e.pending.push_back(static_cast<Slot>(i));
+  e.hit.reflected = reflected;
+  e.hit.reflectWeight = {.5, .5, .5};
+  return e;
+}
+
+template <class M>
+Bytes packetOf(const M& message) {
+  KeepingLink link;
+  Outbox outbox(link);
+  outbox.beginEpoch(Epoch{1});
+  for (std::size_t i = 0; i < kMessages; ++i) outbox.post(TaskId{2}, message);
+  outbox.flush();
+  return link.sent.front();
+}
+
+template <class M>
+void report(benchmark::State& state, const M&, std::size_t bytes) {
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(kMessages));
+  state.counters["bytes"] = static_cast<double>(bytes) / kMessages;
+}
+
+template <class M>
+void write(benchmark::State& state, const M& message) {
+  NullLink link;
+  Outbox outbox(link);
+  outbox.beginEpoch(Epoch{1});
+  for (auto _ : state) {
+    for (std::size_t i = 0; i < kMessages; ++i) outbox.post(TaskId{2}, message);
+    outbox.flush();
+  }
+  report(state, message, packetOf(message).size());
+}
+
+template <class M>
+void read(benchmark::State& state, const M& message) {
+  const Bytes packet = packetOf(message);
+  Sink sink;
+  Traffic traffic;
+  for (auto _ : state) receivePacket(sink, TaskId{1}, packet, traffic);
+  report(state, message, packet.size());
+}
+
+// A whole intersection at a shade task: told of it, its colours come, it is shaded and answered.
+void shade(benchmark::State& state, std::size_t pending, bool reflected) {
+  NullLink link;
+  ShadeTask task(link);
+  Traffic traffic;
+  Configure configure;
+  configure.epoch = Epoch{1};
+  for (int i = 0; i < 3; ++i) configure.setting.lights.push_back({PointLight{{4.0 + i, 3, 2}}, kWhite, true});
+  configure.directory.voxelTasks = {TaskId{1}};
+  configure.directory.shadeTasks = {TaskId{2}};
+  task.on(TaskId{1}, configure);
+  std::uint64_t number = 0;
+  for (auto _ : state) {
+    for (std::size_t i = 0; i < kMessages; ++i)
+      task.on(TaskId{1}, expectation(recordOf(0, number + i), pending, reflected));
+    for (std::size_t i = 0; i < kMessages; ++i) {
+      LightAnswers answers{recordOf(0, number + i), {}};
+      for (std::size_t slot = 0; slot < pending; ++slot)
+        answers.colors.push_back({static_cast<Slot>(slot), kWhite});
+      if (pending > 0) task.on(TaskId{1}, answers);
+      if (reflected) task.on(TaskId{1}, Answer{recordOf(0, number + i), kReflectedSlot, kWhite});
+    }
+    if (pending > 0 || reflected) number += kMessages;
+  }
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(kMessages));
+}
+
+template <class M>
+void both(const std::string& name, const M& message) {
+  benchmark::RegisterBenchmark(("write " + name).c_str(), [=](benchmark::State& s) { write(s, message); });
+  benchmark::RegisterBenchmark(("read " + name).c_str(), [=](benchmark::State& s) { read(s, message); });
+}
+
+}  // namespace
+}  // namespace rayshade
+
+int main(int argc, char** argv) {
+  using namespace rayshade;
+  both("ray", rayTask());
+  both("two shadow rays", shadowTask());
+  both("answer", Answer{12345, kReflectedSlot, {.1, .2, .3}});
+  both("answer of a light", LightAnswers{});
+  both("intersection, complete", expectation(1, 0, false));
+  both("intersection, one light pending", expectation(1, 1, false));
+  benchmark::RegisterBenchmark("shade, complete", [](benchmark::State& s) { shade(s, 0, false); });
+  benchmark::RegisterBenchmark("shade, one light pending", [](benchmark::State& s) { shade(s, 1, false); });
+  benchmark::RegisterBenchmark("shade, light and reflection pending",
+                               [](benchmark::State& s) { shade(s, 1, true); });
+  benchmark::Initialize(&argc, argv);
+  benchmark::RunSpecifiedBenchmarks();
+}
