@@ -52,7 +52,8 @@ void VoxelTask::on(TaskId from, Configure message) {
   desk_.link.connect(worker_.at().directory.voxelTasks);
   desk_.link.connect(worker_.at().directory.shadeTasks);
   desk_.link.connect(worker_.at().directory.pyramidTasks);
-  if (itemsAreNew_) buildRegions();
+  // The host never sends another tree without items, but a message may come from anybody.
+  if (itemsAreNew_ || regions_.size() != voxelCount(worker_.at().tree)) buildRegions();
   itemsAreNew_ = false;
   desk_.outbox.post(from, Ready{message.epoch, arithmeticFingerprint(),
                                 model_->store().objectsOf(kWorld).size(), owned_, model_->leftOut()});
