@@ -78,7 +78,7 @@ int run(const Options& options) {
       options.verbose || !options.verboseFile.empty() || (head.report.wanted && head.report.verbose);
   // As in rayshade: lines that stay, when they were asked for.
   const std::int32_t everyRows = quiet                 ? 0
-                                 : options.reportEvery ? *options.reportEvery
+                                 : options.reportEvery ? std::max(1, *options.reportEvery)
                                  : head.report.wanted  ? head.report.everyRows
                                                        : 0;
   const std::int32_t first = head.picture.firstFrame;

@@ -9,6 +9,8 @@ namespace rayshade {
 
 void declareOptions(CLI::App& app, Options& o) {
   app.set_help_flag("-h,--help", "show this and leave");
+  app.option_defaults()->multi_option_policy(
+      CLI::MultiOptionPolicy::TakeLast);  // said twice: the last counts
   const std::string input = "The scene", picture = "The picture", quality = "Speed against quality",
                     talk = "Messages";
   app.add_option("scene", o.parse.fileName, "scene file in the Rayshade language; none or -: standard input");
@@ -65,9 +67,7 @@ void declareOptions(CLI::App& app, Options& o) {
   app.add_flag("-q", o.quiet, "no progress, no advice")->group(talk);
   app.add_flag("-v", o.verbose, "report at the end")->group(talk);
   app.add_option("-V", o.verboseFile, "report into a file")->group(talk);
-  app.add_option("-F", o.reportEvery, "say how far it is every so many rows")
-      ->check(CLI::PositiveNumber)
-      ->group(talk);
+  app.add_option("-F", o.reportEvery, "say how far it is every so many rows")->group(talk);
   app.footer("Exit status: 0, 1 for a bad scene or file, 2 for a bad command line.");
 }
 
@@ -82,7 +82,7 @@ void applyOptions(const Options& o, SceneHead& head) {
   if (o.crop.size() == 4) picture.crop = {o.crop[0], o.crop[1], o.crop[2], o.crop[3]};
   if (o.cutoff.size() == 3) setting.limits.cutoff = {o.cutoff[0], o.cutoff[1], o.cutoff[2]};
   if (o.contrast.size() == 3) picture.contrast = {o.contrast[0], o.contrast[1], o.contrast[2]};
-  if (o.samples) picture.samplesPerSide = *o.samples;
+  if (o.samples) picture.samplesPerSide = std::max(1, *o.samples);
   if (o.maxDepth) setting.limits.maxDepth = std::max(0, *o.maxDepth);
   if (o.frames) picture.frames = *o.frames;
   if (o.firstFrame) picture.firstFrame = *o.firstFrame;

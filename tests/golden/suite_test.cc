@@ -21,31 +21,10 @@ constexpr double kPatience = 100;             // seconds; ten suffice without sa
 constexpr double kMostDifferent = 0.005;      // share of the pixels
 constexpr long kMostKilobytes = 1024 * 1024;  // of memory
 
-// Words of a command line; '...' holds one together.
-std::vector<std::string> words(const std::string& line) {
-  std::vector<std::string> list;
-  std::string word;
-  bool quoted = false, some = false;
-  for (char c : line + " ") {
-    if (c == '\'') {
-      quoted = !quoted;
-      some = true;
-    } else if (c == ' ' && !quoted) {
-      if (some) list.push_back(word);
-      word.clear();
-      some = false;
-    } else {
-      word += c;
-      some = true;
-    }
-  }
-  return list;
-}
-
 Finished render(const std::string& options, const std::string& scene, const std::string& picture,
                 const std::string& directory, const ScratchDirectory& scratch) {
   std::vector<std::string> arguments{programDirectory() + "/rayshade", scene};
-  for (const std::string& word : words(options)) arguments.push_back(word);
+  for (const std::string& word : wordsOf(options)) arguments.push_back(word);
   if (!picture.empty()) arguments.insert(arguments.end(), {"-O", picture});
   return Program(arguments, scratch / "program", {}, directory).wait(kPatience);
 }

@@ -53,6 +53,26 @@ std::vector<SuiteScene> suiteScenes() {
   return scenes;
 }
 
+std::vector<std::string> wordsOf(const std::string& line) {
+  std::vector<std::string> list;
+  std::string word;
+  bool quoted = false, some = false;
+  for (char c : line + " ") {
+    if (c == '\'') {
+      quoted = !quoted;
+      some = true;
+    } else if (c == ' ' && !quoted) {
+      if (some) list.push_back(word);
+      word.clear();
+      some = false;
+    } else {
+      word += c;
+      some = true;
+    }
+  }
+  return list;
+}
+
 std::vector<BadScene> badScenes() {
   std::vector<BadScene> scenes;
   for (const auto& row : readTable(std::string(kSuiteDirectory) + "/bad/expected.tsv", 5))

@@ -20,6 +20,9 @@ struct SuiteScene {
 };
 std::vector<SuiteScene> suiteScenes();
 
+// Words of a command line; '...' holds one together.
+std::vector<std::string> wordsOf(const std::string& line);
+
 // A line of bad/expected.tsv.
 struct BadScene {
   std::string name;
