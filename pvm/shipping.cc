@@ -32,7 +32,7 @@ void Shipping::addSurface(std::uint32_t task, SurfaceId id) {
   std::set<std::uint32_t>& sent = parcels_[task].surfaces;
   if (sent.size() >= kRemembered) sent.clear();
   if (id == kNoSurface || !sent.insert(number(id)).second) return;
-  if (const Surface* surface = stream_.findSurface(id)) add(task, SurfaceItem{id, *surface});
+  if (const auto surface = stream_.findSurface(id)) add(task, SurfaceItem{id, *surface});
 }
 
 void Shipping::addFrame(std::uint32_t task, const FrameItem& frame) {

@@ -84,7 +84,7 @@ Surface ArgumentReader::surface() {
     base = *named;
     tokens_.advance();
   } else if (word() == Word::cursurf) {
-    base = current == kNoSurface ? defaultSurface() : surfaces_.at(current);
+    base = current.surface;
     tokens_.advance();
   } else if (!isComponent(word())) {
     unexpected("a surface");
@@ -92,25 +92,19 @@ Surface ArgumentReader::surface() {
   return components(base);
 }
 
-SurfaceId ArgumentReader::boundSurface(SceneSink& sink) {
+BoundSurface ArgumentReader::boundSurface(SceneSink& sink) {
   if (!nameFollows()) return surfaces_.bind(surface(), sink);
-  const SurfaceId id = idOf(tokens_.text(), token().place, sink);
+  const std::string name(tokens_.text());
+  const TokenPlace place = token().place;
   tokens_.advance();
-  return changed(id, sink);
-}
-
-SurfaceId ArgumentReader::boundSurface(std::string_view name, const TokenPlace& place, SceneSink& sink) {
-  return changed(idOf(name, place, sink), sink);
-}
-
-SurfaceId ArgumentReader::idOf(std::string_view name, const TokenPlace& place, SceneSink& sink) {
-  if (!surfaces_.known(name)) throw Fault{"undefined surface `" + std::string(name) + "`", place};
-  return surfaces_.bindName(name, sink);
+  return boundSurface(name, place, sink);
 }
 
 // A named surface, or the copy that the components behind its name make of it.
-SurfaceId ArgumentReader::changed(SurfaceId id, SceneSink& sink) {
-  return isComponent(word()) ? surfaces_.bind(components(surfaces_.at(id)), sink) : id;
+BoundSurface ArgumentReader::boundSurface(std::string_view name, const TokenPlace& place, SceneSink& sink) {
+  if (!surfaces_.known(name)) throw Fault{"undefined surface `" + std::string(name) + "`", place};
+  const BoundSurface named = surfaces_.bindName(name, sink);
+  return isComponent(word()) ? surfaces_.bind(components(named.surface), sink) : named;
 }
 
 Surface ArgumentReader::components(Surface s) {

@@ -42,24 +42,22 @@ class ArgumentReader final : public Arguments {
   bool surfaceFollows() const;
   void advance() { tokens_.advance(); }
   std::string name(std::string_view ofWhat);
-  Expression expression();                  // a number or parenthesised expression; may depend on time
-  SurfaceId boundSurface(SceneSink& sink);  // a surface-spec, for an object
+  Expression expression();                     // a number or parenthesised expression; may depend on time
+  BoundSurface boundSurface(SceneSink& sink);  // a surface-spec, for an object
   // The same when the name at its beginning has been read already.
-  SurfaceId boundSurface(std::string_view name, const TokenPlace& place, SceneSink& sink);
+  BoundSurface boundSurface(std::string_view name, const TokenPlace& place, SceneSink& sink);
   void unread(std::string fileName) { unread_ = std::move(fileName); }  // the next fileName() gives it back
   TransformChain transforms();                                          // any number of them
   [[noreturn]] void unexpected(std::string_view wanted) const;          // something else stands here
 
-  TokenPlace subject;              // the keyword whose arguments are being read
-  SurfaceId current = kNoSurface;  // `cursurf`: what `applysurf` has set where we are
+  TokenPlace subject;    // the keyword whose arguments are being read
+  BoundSurface current;  // `cursurf`: what `applysurf` has set where we are
   Variables variables;
 
  private:
   bool symbolFollows(char symbol) const;
   double signedNumber();
   Surface components(Surface base);  // any number of components, changing a surface
-  SurfaceId idOf(std::string_view name, const TokenPlace& place, SceneSink& sink);
-  SurfaceId changed(SurfaceId id, SceneSink& sink);
   void appendTransform(TransformChain& chain);
 
   Tokens& tokens_;

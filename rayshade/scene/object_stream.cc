@@ -6,6 +6,8 @@
 namespace rayshade {
 namespace {
 
+const std::uint64_t kSurfaceBytes = encode(Surface{}).size();
+
 // Spooled items are framed by their size.
 void readItems(Spool& spool, std::uint64_t begin, std::uint64_t end,
                const std::function<void(const Item&)>& take) {
@@ -35,12 +37,15 @@ ObjectStream::ObjectStream(const Exposure& exposure, Consumer consumer)
     : exposure_(exposure), consumer_(std::move(consumer)) {}
 
 void ObjectStream::surface(SurfaceId id, const Surface& surface) {
-  surfaces_.try_emplace(number(id), surface);
+  if (number(id) * kSurfaceBytes == surfaceSpool_.size()) surfaceSpool_.append(encode(surface));
 }
 
-const Surface* ObjectStream::findSurface(SurfaceId id) const {
-  const auto found = surfaces_.find(number(id));
-  return found == surfaces_.end() ? nullptr : &found->second;
+std::optional<Surface> ObjectStream::findSurface(SurfaceId id) {
+  const std::uint64_t at = number(id) * kSurfaceBytes;
+  if (at >= surfaceSpool_.size()) return std::nullopt;
+  Bytes bytes(kSurfaceBytes);
+  surfaceSpool_.read(at, bytes);
+  return decode<Surface>(bytes);
 }
 
 void ObjectStream::note(FrameId id) { statement_.mentioned = std::max(statement_.mentioned, number(id)); }

@@ -3,7 +3,7 @@
 // The transforms of an aggregate stand behind its members, so where a member goes is known only at the end of its
 // top-level statement.  Until then the items of the statement are spooled (to disk when they are many); then they are
 // read back and handed on with their bounds.  Definitions stay in a spool, and can be read back as often as they are
-// used.  What is kept in memory: frames that came after their members, surfaces, and an entry per definition.
+// used, and so do surfaces.  What is kept in memory: frames that came after their members, and an entry per definition.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -29,7 +29,7 @@ class ObjectStream : public SceneSink {
   void object(SceneObject object) override;
   void settled() override;
 
-  const Surface* findSurface(SurfaceId id) const;
+  std::optional<Surface> findSurface(SurfaceId id);
   // What a definition consists of: frames and objects, frames in any order; other definitions that it uses are
   // mentioned only.
   void readDefinition(DefinitionId id, const std::function<void(const Item&)>& item);
@@ -56,7 +56,7 @@ class ObjectStream : public SceneSink {
 
   Exposure exposure_;
   Consumer consumer_;
-  std::unordered_map<std::uint32_t, Surface> surfaces_;
+  Spool surfaceSpool_;  // records of one size, in the order of their numbers
   std::unordered_map<std::uint32_t, Definition> definitions_;
   Spool definitionSpool_;
   Statement statement_;

@@ -14,6 +14,9 @@ namespace {
 
 constexpr int kMostErrors = 20;
 
+// Thrown when there is no point in looking for more that is wrong.
+struct Enough {};
+
 // What is read after an error is only checked.
 class SilentSink final : public SceneSink {
  public:
@@ -23,21 +26,28 @@ class SilentSink final : public SceneSink {
   void settled() override {}
 };
 
+bool beginsInstance(Word word) { return word == Word::shape || word == Word::object || isAggregate(word); }
+bool mayBeMember(Word word) {
+  return beginsInstance(word) || word == Word::surface || word == Word::name || word == Word::applysurf;
+}
+
 // Where objects are being put: the world, a definition, an aggregate.
 struct Scope {
   DefinitionId container = kWorld;
   FrameId frame = kRootFrame;
-  SurfaceId current = kNoSurface;  // what `applysurf` has set
-  bool operands = false;           // of a CSG operation: each of them stays whole
-  int depth = 0;                   // scopes around this one
+  BoundSurface current;   // what `applysurf` has set
+  bool operands = false;  // of a CSG operation: each of them stays whole
+  int depth = 0;          // scopes around this one
   int members = 0;
-  int height = 0;  // levels of aggregates and instances inside
+  bool failed = false;  // something in it was wrong
+  int height = 0;       // levels of aggregates and instances inside
 };
 
 // What `name` has defined.
 struct Definition {
   DefinitionId id = kWorld;
   bool empty = true;
+  bool failed = false;  // said already: its uses are right
   int height = 0;
 };
 
@@ -64,7 +74,7 @@ class Parser {
   std::string message(const TokenPlace& place, std::string_view kind, const std::string& text);
   void warn(const TokenPlace& place, const std::string& text);
   void report(const Fault& fault);
-  void findStatement();
+  void findStatement(const Scope& scope);
 
   void statement();
   bool sceneStatement(Word word, Scope& scope);
@@ -77,7 +87,9 @@ class Parser {
   SurfaceId surfaceOfHeightField();
   void namedInstance(Scope& scope);
   void aggregate(Scope& scope);
-  void gridSize();
+  void gridSize(Scope& scope);
+  template <class Read>
+  void recovering(Scope& scope, const Read& read);
   void members(Scope& scope, Word opening, const TokenPlace& place);
   Placement placement();
   void put(Scope& scope, ObjectBody body, SurfaceId surface, Placement placement);
@@ -96,9 +108,9 @@ class Parser {
   ArgumentReader in_;
   Scope world_;
   std::uint32_t objectCount_ = 0, frames_ = 0, definitions_ = 0;
-  int openAggregates_ = 0;
   std::string errors_;
   int errorCount_ = 0;
+  std::uint64_t wrong_ = 0;  // offset of the last token that was no good
 };
 
 // ---- messages
@@ -117,48 +129,60 @@ void Parser::warn(const TokenPlace& place, const std::string& text) {
 
 void Parser::report(const Fault& fault) {
   sink_ = &silent_;
+  wrong_ = fault.place.offset;
   if (!errors_.empty()) errors_ += "\n";
   errors_ += message(fault.place, "error", fault.message);
-  ++errorCount_;
+  if (++errorCount_ == kMostErrors || fault.hopeless) throw Enough{};
 }
 
 // ---- statements
 
-SceneHead Parser::parse() {
-  bool begun = false, lost = false;
-  while (errorCount_ < kMostErrors) {
+// Reads on behind what is wrong, still in the same scope.
+template <class Read>
+void Parser::recovering(Scope& scope, const Read& read) {
+  bool lost = false;
+  do {
     try {
-      if (!std::exchange(begun, true)) tokens_.advance();
-      if (lost) findStatement();
+      if (lost) {
+        findStatement(scope);
+      } else {
+        read();
+      }
       lost = false;
-      while (in_.token().kind != Token::Kind::end) {
+    } catch (const Fault& fault) {
+      scope.failed = lost = true;
+      report(fault);
+    }
+  } while (lost);
+}
+
+// After an error: goes on to what may be the next statement of this scope, or its `end`.
+void Parser::findStatement(const Scope& scope) {
+  while (in_.token().kind != Token::Kind::end) {
+    const Word word = in_.word();
+    if (scope.depth > 0 && word == Word::end) break;
+    // A word in the middle of a line that was no good there is no statement either.
+    const bool wrong = in_.token().place.offset == wrong_ && !tokens_.firstInLine();
+    if (!wrong && (scope.depth > 0 ? mayBeMember(word) : beginsStatement(word))) break;
+    tokens_.advance();
+  }
+  in_.current = scope.current;
+}
+
+SceneHead Parser::parse() {
+  try {
+    recovering(world_, [this] { tokens_.advance(); });
+    while (in_.token().kind != Token::Kind::end) {
+      recovering(world_, [this] {
         statement();
         sink_->settled();
-      }
-      break;
-    } catch (const Fault& fault) {
-      report(fault);
-      if (fault.hopeless) break;
-      lost = true;
+      });
     }
+  } catch (const Enough&) {
   }
   if (head_.setting.lights.empty())
     head_.setting.lights.push_back({DirectionalLight{normalize({1, -1, 1})}, kWhite, true});
   return std::move(head_);
-}
-
-// After an error: goes on to the next statement behind the aggregates that are open.
-void Parser::findStatement() {
-  world_.operands = false;
-  while (in_.token().kind != Token::Kind::end) {
-    const Word word = in_.word();
-    if (openAggregates_ == 0 && beginsStatement(word)) break;
-    if (isAggregate(word)) ++openAggregates_;
-    if (word == Word::end && openAggregates_ > 0) --openAggregates_;
-    tokens_.advance();
-  }
-  openAggregates_ = 0;
-  in_.current = world_.current;
 }
 
 void Parser::statement() {
@@ -175,7 +199,7 @@ void Parser::statement() {
 
 // What may stand in an aggregate as well; takes its keyword only if it is such a statement.
 bool Parser::sceneStatement(Word word, Scope& scope) {
-  if (word == Word::shape || word == Word::object || isAggregate(word)) {
+  if (beginsInstance(word)) {
     instance(scope);
     return true;
   }
@@ -195,7 +219,14 @@ bool Parser::sceneStatement(Word word, Scope& scope) {
 void Parser::define() {
   const TokenPlace place = in_.token().place;
   const std::string name = in_.name("a variable");
-  if (!in_.variables.add(name, in_.expression())) throw Fault{"`" + name + "` is defined already", place};
+  std::optional<Expression> value;
+  try {
+    value = in_.expression();
+  } catch (const Fault&) {
+    in_.variables.add(name, constantExpression(1));  // one message is enough: its uses are right
+    throw;
+  }
+  if (!in_.variables.add(name, std::move(*value))) throw Fault{"`" + name + "` is defined already", place};
 }
 
 void Parser::defineSurface() {
@@ -219,14 +250,14 @@ void Parser::defineObject(const Scope& scope) {
   inner.current = scope.current;
   inner.depth = scope.depth + 1;
   try {
-    const Word word = in_.word();
-    if (word != Word::shape && word != Word::object && !isAggregate(word)) in_.unexpected("an object");
+    if (!beginsInstance(in_.word())) in_.unexpected("an object");
     instance(inner);
   } catch (const Fault&) {
-    objects_.insert_or_assign(name, Definition{});  // one message is enough: its uses are right
+    objects_.insert_or_assign(name, Definition{.failed = true});
     throw;
   }
-  objects_.insert_or_assign(name, Definition{inner.container, inner.members == 0, inner.height});
+  objects_.insert_or_assign(name,
+                            Definition{inner.container, inner.members == 0, inner.failed, inner.height});
 }
 
 // ---- objects
@@ -266,11 +297,11 @@ void Parser::primitive(Scope& scope) {
   const std::string word(tokens_.text());  // short: no memory is taken
   const bool heightField = word == "heightfield";
   tokens_.advance();
-  SurfaceId surface = scope.current;
+  SurfaceId surface = scope.current.id;
   if (heightField) {
     surface = surfaceOfHeightField();
   } else if (in_.surfaceFollows()) {
-    surface = in_.boundSurface(*sink_);
+    surface = in_.boundSurface(*sink_).id;
   }
   std::optional<AnyShape> shape = parseShape(keyword.keyword.index, in_);
   Placement where = placement();
@@ -281,10 +312,10 @@ void Parser::primitive(Scope& scope) {
 // `heightfield [surface] FILE`: a name is a surface only if something follows that can be the file.
 // A height field never takes what `applysurf` has set.
 SurfaceId Parser::surfaceOfHeightField() {
-  if (in_.word() == Word::cursurf || isComponent(in_.word())) return in_.boundSurface(*sink_);
+  if (in_.word() == Word::cursurf || isComponent(in_.word())) return in_.boundSurface(*sink_).id;
   const TokenPlace place = in_.token().place;
   const std::string first = in_.fileName();
-  if (isComponent(in_.word()) || in_.fileNameFollows()) return in_.boundSurface(first, place, *sink_);
+  if (isComponent(in_.word()) || in_.fileNameFollows()) return in_.boundSurface(first, place, *sink_).id;
   in_.unread(first);
   return kNoSurface;
 }
@@ -293,12 +324,12 @@ SurfaceId Parser::surfaceOfHeightField() {
 void Parser::namedInstance(Scope& scope) {
   const TokenPlace place = in_.token().place;
   tokens_.advance();
-  SurfaceId surface = scope.current;
-  if (in_.word() == Word::cursurf || isComponent(in_.word())) surface = in_.boundSurface(*sink_);
+  SurfaceId surface = scope.current.id;
+  if (in_.word() == Word::cursurf || isComponent(in_.word())) surface = in_.boundSurface(*sink_).id;
   TokenPlace namePlace = in_.token().place;
   std::string name = in_.name("an object");
   if (in_.nameFollows() || isComponent(in_.word())) {
-    surface = in_.boundSurface(name, namePlace, *sink_);
+    surface = in_.boundSurface(name, namePlace, *sink_).id;
     namePlace = in_.token().place;
     name = in_.name("an object");
   }
@@ -306,6 +337,10 @@ void Parser::namedInstance(Scope& scope) {
   if (known == objects_.end()) throw Fault{"undefined object `" + name + "`", namePlace};
   const Definition definition = known->second;
   Placement where = placement();
+  if (definition.failed) {
+    scope.failed = true;
+    return;
+  }
   if (definition.empty) return warn(place, "object `" + name + "` is empty: it is left out");
   nest(scope, definition.height + 1, place);
   put(scope, Instance{definition.id}, surface, std::move(where));
@@ -313,7 +348,8 @@ void Parser::namedInstance(Scope& scope) {
 
 void Parser::nest(Scope& scope, int height, const TokenPlace& place) {
   if (scope.depth + height > kDeepestNesting)
-    throw Fault{"objects are nested more than " + std::to_string(kDeepestNesting) + " levels deep", place};
+    throw Fault{"objects are nested more than " + std::to_string(kDeepestNesting) + " levels deep", place,
+                true};
   scope.height = std::max(scope.height, height);
 }
 
@@ -322,8 +358,6 @@ void Parser::aggregate(Scope& scope) {
   const Word opening = in_.word();
   const std::string word(tokens_.text());
   tokens_.advance();
-  ++openAggregates_;
-  if (opening == Word::grid) gridSize();
 
   const bool csg = isCsg(opening);
   const bool dissolved = !csg && !scope.operands;
@@ -333,12 +367,14 @@ void Parser::aggregate(Scope& scope) {
   inner.operands = csg;
   inner.depth = scope.depth + 1;
   nest(scope, 1, place);
+  if (opening == Word::grid) gridSize(inner);
   members(inner, opening, place);
   nest(scope, inner.height + 1, place);
-  --openAggregates_;
+  scope.failed = scope.failed || inner.failed;
   in_.current = scope.current;
 
   Placement where = placement();
+  if (inner.failed) return;  // how many members there are is not known then
   if (csg) {
     if (inner.members != 2)
       throw Fault{"the CSG operation `" + word + "` needs exactly two objects and has " +
@@ -347,27 +383,39 @@ void Parser::aggregate(Scope& scope) {
     const CsgOperation operation = opening == Word::unite       ? CsgOperation::unite
                                    : opening == Word::intersect ? CsgOperation::intersect
                                                                 : CsgOperation::subtract;
-    return put(scope, Csg{operation, inner.container}, scope.current, std::move(where));
+    return put(scope, Csg{operation, inner.container}, scope.current.id, std::move(where));
   }
   if (inner.members == 0) return warn(place, "empty " + word + ": it is left out");
-  if (!dissolved) return put(scope, Instance{inner.container}, scope.current, std::move(where));
+  if (!dissolved) return put(scope, Instance{inner.container}, scope.current.id, std::move(where));
   sink_->frame(inner.frame,
-               {scope.frame, std::move(where.transforms), scope.current, std::move(where.textures)});
+               {scope.frame, std::move(where.transforms), scope.current.id, std::move(where.textures)});
   ++scope.members;
 }
 
 // The size is of no use to us: objects are sorted by another structure.
-void Parser::gridSize() {
-  const int x = in_.integer(), y = in_.integer(), z = in_.integer();
-  if (x < 1 || y < 1 || z < 1) in_.warn("a grid has at least one cell along each axis: taken as a list");
+void Parser::gridSize(Scope& scope) {
+  recovering(scope, [this] {
+    const int x = in_.integer(), y = in_.integer(), z = in_.integer();
+    if (x < 1 || y < 1 || z < 1) in_.warn("a grid has at least one cell along each axis: taken as a list");
+  });
 }
 
 void Parser::members(Scope& scope, Word opening, const TokenPlace& place) {
-  in_.current = kNoSurface;
+  in_.current = {};
+  bool strayed = false;  // to what stands only at the top level: a forgotten `end` is said once
   while (in_.word() != Word::end) {
-    if (in_.token().kind == Token::Kind::end) throw Fault{"this aggregate has no `end`", place};
-    if (!sceneStatement(in_.word(), scope))
-      in_.unexpected(isCsg(opening) ? "an operand or `end`" : "an object or `end`");
+    const bool ended = in_.token().kind == Token::Kind::end;
+    if (ended && strayed) throw Enough{};
+    if (ended) throw Fault{"this aggregate has no `end`", place, true};
+    const bool strays = beginsStatement(in_.word()) && !mayBeMember(in_.word());
+    if (strays && std::exchange(strayed, true)) {
+      findStatement(scope);
+      continue;
+    }
+    recovering(scope, [&] {
+      if (!sceneStatement(in_.word(), scope))
+        in_.unexpected(isCsg(opening) ? "an operand or `end`" : "an object or `end`");
+    });
   }
   tokens_.advance();
 }

@@ -12,21 +12,22 @@ const Surface* SurfaceTable::find(std::string_view name) const {
   return at == named_.end() ? nullptr : &at->second.surface;
 }
 
-SurfaceId SurfaceTable::bind(const Surface& surface, SceneSink& sink) {
+BoundSurface SurfaceTable::bind(const Surface& surface, SceneSink& sink) {
   const Bytes bytes = encode(surface);
   const std::string key(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  const auto [at, isNew] = numbers_.try_emplace(key, SurfaceId{static_cast<std::uint32_t>(surfaces_.size())});
+  if (remembered_.size() >= kRemembered && !remembered_.contains(key)) remembered_.clear();
+  const auto [at, isNew] = remembered_.try_emplace(key, SurfaceId{count_});
   if (isNew) {
-    surfaces_.push_back(surface);
+    ++count_;
     sink.surface(at->second, surface);
   }
-  return at->second;
+  return {at->second, surface};
 }
 
-SurfaceId SurfaceTable::bindName(std::string_view name, SceneSink& sink) {
+BoundSurface SurfaceTable::bindName(std::string_view name, SceneSink& sink) {
   Named& named = named_.find(name)->second;
-  if (named.id == kNoSurface) named.id = bind(named.surface, sink);
-  return named.id;
+  if (named.id == kNoSurface) named.id = bind(named.surface, sink).id;
+  return {named.id, named.surface};
 }
 
 }  // namespace rayshade

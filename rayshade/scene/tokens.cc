@@ -249,6 +249,13 @@ std::uint32_t Tokens::numberOfFile(std::string_view name) {
   return at->second;
 }
 
+bool Tokens::firstInLine() const {
+  const TokenPlace& place = token_.place;
+  const std::uint64_t start = std::max(place.lineStart, windowStart_);
+  const std::string_view before = textAt(start, static_cast<std::size_t>(place.offset - start));
+  return std::all_of(before.begin(), before.end(), [](char c) { return classOf(c) == Class::space; });
+}
+
 bool Tokens::fileNameFollows() const {
   if (token_.kind == Token::Kind::end) return false;
   const char* const begin = window_.data() + (token_.place.offset - windowStart_);

@@ -60,7 +60,8 @@ class Tokens {
 
   const Token& current() const { return token_; }
   std::string_view text() const { return textAt(token_.place.offset, token_.length); }
-  void advance();  // throws Fault; asked again after that, it goes on behind what was wrong
+  bool firstInLine() const;  // nothing but blanks stands before the current token
+  void advance();            // throws Fault; asked again after that, it goes on behind what was wrong
 
   // Is the current token the beginning of a file name?  Reads it and advances, in one.
   bool fileNameFollows() const;

@@ -26,7 +26,7 @@ class SurveySink : public SceneSink {
                   survey_.sketch.add(bounds);
                 }) {}
 
-  void surface(SurfaceId id, const Surface& surface) override { stream_.surface(id, surface); }
+  void surface(SurfaceId, const Surface&) override {}
   void frame(FrameId id, Frame frame) override {
     survey_.moves = survey_.moves || frame.transforms.moves();
     stream_.frame(id, std::move(frame));

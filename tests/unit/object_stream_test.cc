@@ -108,8 +108,7 @@ TEST(ObjectStream, AnObjectWithItsFramesAndDefinitionsStandsOnItsOwn) {
         const FrameItem* frame = std::get_if<FrameItem>(&item);
         for (SurfaceId id :
              {object ? object->surface : kNoSurface, frame ? frame->frame.surface : kNoSurface})
-          if (const Surface* surface = both.stream.findSurface(id))
-            items.emplace_back(SurfaceItem{id, *surface});
+          if (const auto surface = both.stream.findSurface(id)) items.emplace_back(SurfaceItem{id, *surface});
       }
       model.take(std::move(items));
       model.prepare(exposure);
@@ -182,7 +181,7 @@ TEST(ObjectStream, SurfacesAreFoundByTheirNumbers) {
   ASSERT_EQ(both.placed.size(), 2u);
   EXPECT_EQ(both.stream.findSurface(both.placed[0].object.surface)->diffuse, (Color{0, 0, 1}));
   EXPECT_EQ(both.stream.findSurface(both.placed[1].object.surface)->diffuse, (Color{1, 0, 0}));
-  EXPECT_EQ(both.stream.findSurface(SurfaceId{99}), nullptr);
+  EXPECT_EQ(both.stream.findSurface(SurfaceId{99}), std::nullopt);
 }
 
 }  // namespace

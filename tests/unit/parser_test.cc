@@ -5,6 +5,7 @@
 
 #include <map>
 
+#include "rayshade/scene/surface_table.h"
 #include "rayshade/scene/viewing.h"
 
 namespace rayshade {
@@ -94,6 +95,15 @@ std::unique_ptr<Scene> good(const std::string& text) {
 }
 
 std::string firstLine(const std::string& text) { return text.substr(0, text.find('\n')); }
+
+// The lines that messages name.
+std::vector<int> linesOf(const std::string& messages) {
+  std::vector<int> lines;
+  for (std::size_t at = 0; (at = messages.find("s.ray:", at)) != std::string::npos; ++at)
+    lines.push_back(std::stoi(messages.substr(at + 6)));
+  return lines;
+}
+
 std::string errorOf(const std::string& text) { return firstLine(parse(text)->errors); }
 
 // red 1, green 2, blue 3: told apart by the red channel of their diffuse colour.
@@ -152,6 +162,16 @@ TEST(Parser, GivesEqualSurfacesOneNumber) {
            "sphere same 1 0 0 0 applysurf red sphere 1 0 0 0");
   EXPECT_EQ(s->items.surfaces.size(), 1u);
   EXPECT_EQ(s->items.objects.size(), 5u);
+}
+
+// The memory of a parser does not grow with them: an old one that comes again is a new one.
+TEST(Parser, ForgetsSurfacesInPlaceAfterThousandsOfOthers) {
+  constexpr std::size_t kObjects = SurfaceTable::kRemembered + 1;
+  std::string text = "surface named diffuse 1 0 0\nsphere named 1 0 0 0\n";
+  for (std::size_t i = 0; i < kObjects; ++i) text += "sphere specpow " + std::to_string(i) + " 1 0 0 0\n";
+  const auto s = good(text + "sphere specpow 0 1 0 0 0 sphere named 1 0 0 0");
+  EXPECT_EQ(s->items.surfaces.size(), kObjects + 2);
+  EXPECT_EQ(s->items.objects.back().surface, s->items.objects.front().surface);
 }
 
 TEST(Parser, WarnsWhenASurfaceIsDefinedAgainAndUsesTheNewOne) {
@@ -663,10 +683,27 @@ TEST(Parser, GoesOnAtTheNextStatementAfterAnError) {
   const auto s = parse(
       "spheres 1\nsphere red 1 0 0 0\nsphere 1 0 0 x\nbox 0 0 0 1 1 1\nlist\n sphere grey 1 0 0 0\n box "
       "nix\nend\nsphere blue 1 0 0 0");
-  std::vector<std::string> lines;
-  for (std::size_t at = 0; (at = s->errors.find("s.ray:", at)) != std::string::npos; ++at)
-    lines.push_back(s->errors.substr(at, 8));
-  EXPECT_EQ(lines, (std::vector<std::string>{"s.ray:1:", "s.ray:2:", "s.ray:3:", "s.ray:6:", "s.ray:9:"}));
+  EXPECT_EQ(linesOf(s->errors), (std::vector<int>{1, 2, 3, 6, 7, 9}));
+}
+
+TEST(Parser, GoesOnInsideOfAggregatesAfterAnError) {
+  const auto s = parse(
+      "grid 3 3\n list\n  sphere nix 1 0 0 0\n  name ball sphere 1 0 0 0\n  surface red diffuse 1 0 0\n end\n"
+      " union sphere nix 1 0 0 0\n  box 1 2\n end\nend\nobject red ball\nlist\n box 3\nend rotate 1\n"
+      "sphere 1\n");
+  EXPECT_EQ(linesOf(s->errors), (std::vector<int>{2, 3, 7, 9, 14, 15, 16})) << s->errors;
+}
+
+TEST(Parser, SaysOnceThatAnEndIsForgotten) {
+  const auto s = parse("list\n sphere 1 0 0 0\nlight 1 point 0 0 0\nscreen 3 3\nsphere nix 1 0 0 0\nfov 3\n");
+  EXPECT_EQ(linesOf(s->errors), (std::vector<int>{3, 5})) << s->errors;
+}
+
+TEST(Parser, TakesAReservedWordInTheMiddleOfALineForNoStatement) {
+  EXPECT_EQ(
+      linesOf(
+          parse("surface sphere diffuse 1 1 1\nsphere surface 1 0 0 0\nname list sphere 1 0 0 0\n")->errors),
+      (std::vector<int>{1, 2, 3}));
 }
 
 TEST(Parser, TellsTheSinkNothingBehindAnError) {
@@ -676,8 +713,12 @@ TEST(Parser, TellsTheSinkNothingBehindAnError) {
 }
 
 TEST(Parser, DoesNotComplainOfTheUsesOfABadDefinition) {
-  const auto s = parse("surface red diffuse 1 x\nsphere red 1 0 0 0\nname n sphere 1 0\nobject n\n");
-  EXPECT_EQ(s->errors.find("undefined"), std::string::npos) << s->errors;
+  const auto s = parse(
+      "surface red diffuse 1 x\nsphere red 1 0 0 0\nname n sphere 1 0\nobject n\ndefine a (b)\nsphere (a) 0 "
+      "0 0\n"
+      "name m list\n sphere 1\nend\nunion object m sphere 1 0 0 0 end\nname k list object m end object k\n");
+  EXPECT_EQ(linesOf(s->errors), (std::vector<int>{1, 4, 5, 9})) << s->errors;
+  EXPECT_TRUE(s->warnings.empty()) << s->warnings[0];
 }
 
 TEST(Parser, StopsAfterTwentyErrors) {
