@@ -116,6 +116,7 @@ class RayWorker : public GroundSource {
 
   Ground voxel(VoxelId voxel) override { return own_ == nullptr ? Ground{} : own_->own(voxel); }
   Ground cell(CellId cell) override;
+  bool fetches() override { return at_.policy.shadows != ShadowPolicy::forward; }
   bool mayMeet(VoxelId voxel, const Ray& ray, double tMin, double tMax) override {
     return at_.contents.mayMeet(voxel, ray.origin, ray.direction, tMin, tMax);
   }

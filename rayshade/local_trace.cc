@@ -28,6 +28,8 @@ LocalProgress walkLocally(const BinTree& tree, GroundSource& source, const Ray& 
       continue;
     }
     if (!source.mayMeet(step.where, ray, step.tEnter, std::min(step.tExit, limit))) continue;
+    if (!source.fetches())
+      return {LocalProgress::State::missing, {}, nullptr, firstCellOfVoxel(tree, step.where), step.where, i};
     if (!cells) {
       cells.emplace(tree, ray.origin, ray.direction);
       cellIsSet = cells->next(cell);

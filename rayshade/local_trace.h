@@ -24,6 +24,7 @@ class GroundSource {
   virtual ~GroundSource() = default;
   virtual Ground voxel(VoxelId voxel) = 0;  // one's own
   virtual Ground cell(CellId cell) = 0;     // fetched
+  virtual bool fetches() { return true; }   // may there be fetched cells at all?
   // Could a ray meet something at t in [tMin, tMax] in a voxel that is not one's own?  Yes, if nothing is known.
   virtual bool mayMeet(VoxelId, const Ray&, double /*tMin*/, double /*tMax*/) { return true; }
 };
