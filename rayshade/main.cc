@@ -121,17 +121,9 @@ int run(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("rayshade - renders a scene in the language of Rayshade 4", "rayshade");
   Options options;
   bool plan = false;
-  declareOptions(app, options);
-  app.add_flag("--plan", plan, "render nothing: print what the scene uses, and what is switched off")
-      ->group("Messages");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
+  if (const std::optional<int> status = readCommandLine(argc, argv, options, plan)) return *status;
   listenForInterruption();
   options.parse.warn = [&options](const std::string& message) {
     if (!options.quiet) std::fprintf(stderr, "%s\n", message.c_str());

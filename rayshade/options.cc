@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rayshade/options.h"
 
+#include <CLI/CLI.hpp>
 #include <cstdio>
 
 #include "rayshade/scene/viewing.h"
@@ -69,6 +70,19 @@ void declareOptions(CLI::App& app, Options& o) {
   app.add_option("-V", o.verboseFile, "report into a file")->group(talk);
   app.add_option("-F", o.reportEvery, "say how far it is every so many rows")->group(talk);
   app.footer("Exit status: 0, 1 for a bad scene or file, 2 for a bad command line.");
+}
+
+std::optional<int> readCommandLine(int argc, char** argv, Options& options, bool& plan) {
+  CLI::App app("rayshade - renders a scene in the language of Rayshade 4", "rayshade");
+  declareOptions(app, options);
+  app.add_flag("--plan", plan, "render nothing: print what the scene uses, and what is switched off")
+      ->group("Messages");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  return std::nullopt;
 }
 
 void applyOptions(const Options& o, SceneHead& head) {

@@ -4,10 +4,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include "rayshade/image/picture.h"
 #include "rayshade/scene/parser.h"
+
+namespace CLI {
+class App;  // only those who declare or parse options need the whole of it, which takes seconds to compile
+}
 
 namespace rayshade {
 
@@ -31,6 +33,10 @@ struct Options {
 
 // Declares the options in an application; what they say arrives in `options` when it parses.
 void declareOptions(CLI::App& app, Options& options);
+
+// The command line of the program `rayshade`; `plan`: nothing is to be rendered.  Says what is wrong with it, or helps;
+// then, and only then, there is a status to leave with.
+std::optional<int> readCommandLine(int argc, char** argv, Options& options, bool& plan);
 
 // Puts what was said over what the scene file says.  Throws SceneError where the two do not go together.
 void applyOptions(const Options& options, SceneHead& head);

@@ -74,7 +74,8 @@ using Item = std::variant<SurfaceItem, FrameItem, SceneObject>;
 
 // Takes the items of a scene one by one while it is read.
 //
-// Order: a frame or surface comes before what mentions it, with one exception.  The transforms of an
+// Order: a frame or surface comes before what mentions it, and surfaces are numbered 0, 1, 2... as they come.  There is
+// one exception.  The transforms of an
 // aggregate stand behind its `end`, so its frame comes after its members; `settled` is called whenever every
 // frame mentioned so far is known (at the end of each top-level statement).  A definition comes before its
 // first use.
@@ -87,14 +88,13 @@ class SceneSink {
   virtual void settled() = 0;
 };
 
-template <class Archive>
-void serialize(Archive& archive, PlacedTexture& t) {
-  archive(t.texture, t.transforms);
-}
-template <class Archive>
-void serialize(Archive& archive, Frame& f) {
-  archive(f.parent, f.transforms, f.surface, f.textures);
-}
+// In items.cc, both directions: shapes and textures of every kind take long to compile, and many files read or write
+// items.
+void serialize(Writer& archive, Frame& f);
+void serialize(Reader& archive, Frame& f);
+void serialize(Writer& archive, SceneObject& o);
+void serialize(Reader& archive, SceneObject& o);
+
 template <class Archive>
 void serialize(Archive& archive, Instance& i) {
   archive(i.definition);
@@ -104,10 +104,6 @@ void serialize(Archive& archive, Csg& c) {
   archive(c.operation, c.operands);
 }
 template <class Archive>
-void serialize(Archive& archive, SceneObject& o) {
-  archive(o.id, o.container, o.frame, o.surface, o.body);
-}
-template <class Archive>
 void serialize(Archive& archive, SurfaceItem& i) {
   archive(i.id, i.surface);
 }
@@ -115,4 +111,5 @@ template <class Archive>
 void serialize(Archive& archive, FrameItem& i) {
   archive(i.id, i.frame);
 }
+
 }  // namespace rayshade
