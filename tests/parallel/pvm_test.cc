@@ -140,7 +140,7 @@ TEST_F(Pvm, PicturesAreThoseOfTheSequentialProgramByteForByte) {
         Case{"-S 1 -R 80 60 scenes/gallery/chess.ray", "--voxels 5 --shades 2", "b.pfm"},
         Case{"-S 1 -R 60 60 scenes/gallery/glass-and-mirrors.ray", "--voxels 4 --shades 3 --window 50",
              "c.pfm"},
-        Case{"-S 1 -R 60 40 scenes/gallery/nautilus.ray", "--voxels 3 --voxels-per-task 2", "d.ppm"},
+        Case{"-S 1 -R 60 40 scenes/gallery/nautilus.ray", "--voxels 3 --voxels-per-task 2 --split cost", "d.ppm"},
         Case{"-S 1 -R 60 40 scenes/gallery/pavilion.ray", "", "e.png"}}) {
     SCOPED_TRACE(std::string(c.scene) + " " + c.tasks);
     const std::string expected = sequential(c.scene, std::string("sequential-") + c.picture);

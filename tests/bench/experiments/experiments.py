@@ -12,6 +12,7 @@ PROCESSORS = [1, 2, 4, 8, 16]
 MANY = 8  # processors, where they are not what is varied
 CELLS = 256  # of the bin-tree, where objects are fetched: small ones, since the scenes are small
 CACHE = 0.1  # of the model: what a task may hold of others' objects, where it is not what is varied
+PYRAMIDS = 1024  # in a picture, whatever its size: so many of 256 samples make one of 512 x 512 pixels
 
 
 def tasks_for(count, schedule, shades=None):
@@ -21,13 +22,19 @@ def tasks_for(count, schedule, shades=None):
     return f"--schedule {schedule} --voxels {count} --pyramids {pyramids} --shades {shades}"
 
 
+def fetching(lab, scene, part=CACHE):
+    """How objects are fetched, with a cache of this part of the model."""
+    size = part * lab.model_bytes(scene)
+    return f" --cells {CELLS} --tile {max(1, lab.side ** 2 // PYRAMIDS)} --cache {size / 1e6:.6f}"
+
+
 def schedules(lab, quick):
     """The schemes against each other, on more and more processors."""
     for scene in SCENES:
-        fetching = f" --cells {CELLS} --cache {CACHE * lab.model_bytes(scene) / 1e6:.6f}"
         for schedule in SCHEDULES:
             for count in [2, 8] if quick else PROCESSORS:
-                run = lab.render(scene, tasks_for(count, schedule) + ("" if schedule == "data" else fetching))
+                run = lab.render(scene, tasks_for(count, schedule) +
+                                 ("" if schedule == "data" else fetching(lab, scene)))
                 places = processors(run, count)
                 _, alone = lab.reference(scene)
                 yield {
@@ -56,10 +63,9 @@ def cache(lab, quick):
         whole = lab.model_bytes(scene)
         for kind, options in kinds.items():
             for parts in [40, 4, 1] if quick else [40, 20, 10, 5, 2, 1]:
-                size = whole / parts
-                run = lab.render(scene, f"{options} --cells {CELLS} --cache {size / 1e6:.6f}")
+                run = lab.render(scene, options + fetching(lab, scene, 1 / parts))
                 yield {
-                    "scene": scene, "fetched for": kind, "partOfModel": 1 / parts, "cacheBytes": int(size),
+                    "scene": scene, "fetched for": kind, "partOfModel": 1 / parts, "cacheBytes": int(whole / parts),
                     "hitRatio": hit_ratio(run.tasks), "noFetchRatio": no_fetch_ratio(run.tasks),
                     "cellsFetched": sum(task["cacheFetched"] for task in run.tasks),
                     "fetchedBytes": sum(task["cacheFetchedBytes"] for task in run.tasks),
@@ -71,7 +77,7 @@ def horizon(lab, quick):
     """Where demand-driven pyramids become data-driven rays."""
     for scene in ["balls"] if quick else ["balls", "gears", "tree"]:
         for cells in ["0c", "4c", "auto"] if quick else ["0c", "1c", "2c", "4c", "8c", "16c", "32c", "64c", "auto"]:
-            run = lab.render(scene, f"{tasks_for(MANY, 'hybrid')} --cells {CELLS} --horizon {cells}")
+            run = lab.render(scene, f"{tasks_for(MANY, 'hybrid')}{fetching(lab, scene)} --horizon {cells}")
             places = processors(run, MANY)
             pyramids = run.of("pyramid-trace")
             yield {
@@ -112,7 +118,7 @@ def clusters(lab, quick):
             for copies in [1, 2, 4]:
                 options = (f"--schedule {schedule} --clusters {copies} --voxels {MANY // copies} "
                            f"--pyramids {0 if schedule == 'data' else MANY} --shades {MANY // 4}")
-                run = lab.render(scene, options)
+                run = lab.render(scene, options + ("" if schedule == "data" else fetching(lab, scene)))
                 places = processors(run, MANY)
                 yield {
                     "scene": scene, "schedule": schedule, "clusters": copies,

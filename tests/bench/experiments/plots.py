@@ -44,7 +44,7 @@ def figure(file, panels, columns=3):
     size = f"{330 * columns},{290 * rows}"
     script = [f'set terminal svg size {size} font "sans,11" background rgb "white"', f'set output "{file}"',
               "set grid lc rgb '#dddddd'",
-              "set key outside below center horizontal samplen 1.2 width -2 noenhanced",
+              "set key outside below center horizontal samplen 1.2 width -1 noenhanced",
               "set border 3", "set tics nomirror out", f"set multiplot layout {rows},{columns}",
               *(panel.script() for panel in panels), "unset multiplot"]
     subprocess.run(["gnuplot"], input="\n".join(script), text=True, check=True)
