@@ -22,6 +22,8 @@ class Scene : public VoxelSource {
   BinTree tree;
 
   const Region* find(VoxelId voxel) const override { return &regions_[static_cast<std::size_t>(voxel)]; }
+  bool undivided() const { return regions_.size() == 1; }
+  const Region& space() const { return regions_[0]; }  // all of it, if undivided
   std::size_t bytes() const;
 
  private:

@@ -63,8 +63,12 @@ const Surface& boundSurface(const Model& model, const HitPath& path) {
 }
 
 SurfacePoint evaluateSurface(const Model& model, const Hit& hit, const Ray& ray, const Setting& setting) {
+  return evaluateSurface(model, hit, pathTo(model, ray, hit), ray, setting);
+}
+
+SurfacePoint evaluateSurface(const Model& model, const Hit& hit, const HitPath& path, const Ray& ray,
+                             const Setting& setting) {
   const SceneStore& store = model.store();
-  const HitPath path = pathTo(model, ray, hit);
   const PathStep& last = path.steps[path.steps.size() - 1];
   ShapePoint shapePoint = withShape(store, store.object(last.object), [&](const auto& shape) {
     return shape.pointAt(last.ray, rootAt(model, last, hit.t));

@@ -11,6 +11,9 @@ namespace rayshade {
 
 // Requires hit.found().
 SurfacePoint evaluateSurface(const Model& model, const Hit& hit, const Ray& ray, const Setting& setting);
+// The same when pathTo() has been asked already.
+SurfacePoint evaluateSurface(const Model& model, const Hit& hit, const HitPath& path, const Ray& ray,
+                             const Setting& setting);
 
 // The surface that binds a hit, before textures: the innermost of the path from the shape up to the world.
 const Surface& boundSurface(const Model& model, const HitPath& path);

@@ -17,15 +17,21 @@ bool passShadow(const Model& model, const Region& region, ShadowRay& shadow, dou
     const Hit hit = visit(model, region, shadow.ray, shadow.last, end);
     shadow.tests += hit.tests;
     if (!hit.found()) return true;
-    if (boundSurface(model, pathTo(model, shadow.ray, hit)).transparency < kNegligible) return false;
-    const SurfacePoint at = evaluateSurface(model, hit, shadow.ray, setting);
-    if (shadow.inside) shadow.through = shadow.through * std::pow(shadow.insideExtinct, hit.t - shadow.last);
-    shadow.through = shadow.through * (at.surface.transparency * at.surface.body);
-    if (!anyAbove(shadow.through, kNegligible)) return false;
-    shadow.inside = at.entering;
-    shadow.insideExtinct = at.surface.extinct;
-    shadow.last = hit.t;
+    if (!passSurface(model, hit, shadow, setting)) return false;
   }
+}
+
+bool passSurface(const Model& model, const Hit& hit, ShadowRay& shadow, const Setting& setting) {
+  const HitPath path = pathTo(model, shadow.ray, hit);
+  if (boundSurface(model, path).transparency < kNegligible) return false;
+  const SurfacePoint at = evaluateSurface(model, hit, path, shadow.ray, setting);
+  if (shadow.inside) shadow.through = shadow.through * std::pow(shadow.insideExtinct, hit.t - shadow.last);
+  shadow.through = shadow.through * (at.surface.transparency * at.surface.body);
+  if (!anyAbove(shadow.through, kNegligible)) return false;
+  shadow.inside = at.entering;
+  shadow.insideExtinct = at.surface.extinct;
+  shadow.last = hit.t;
+  return true;
 }
 
 }  // namespace rayshade

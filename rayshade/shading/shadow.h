@@ -17,4 +17,7 @@ namespace rayshade {
 bool passShadow(const Model& model, const Region& region, ShadowRay& shadow, double tExit,
                 const Setting& setting);
 
+// Takes the ray through a transparent surface that it meets.  False: it ends in darkness.
+bool passSurface(const Model& model, const Hit& hit, ShadowRay& shadow, const Setting& setting);
+
 }  // namespace rayshade

@@ -21,10 +21,47 @@ double powerOfTwo(int exponent) { return std::bit_cast<double>(std::uint64_t(102
 // The exponent of a normal number x: 2^exponent <= x < 2^(exponent + 1).
 int exponentOf(double x) { return static_cast<int>(std::bit_cast<std::uint64_t>(x) >> 52 & 0x7ff) - 1023; }
 
+typedef double Double2 __attribute__((vector_size(16)));
+
 // A float below (above) x, for any x that is off by a few 2^-53 |x|: the margin is larger than that and half
 // a float's last digit together; the constant serves where floats have fewer digits.
 float floatBelow(double x) { return static_cast<float>(x - (std::abs(x) * 0x1.8p-24 + 0x1p-120)); }
 float floatAbove(double x) { return static_cast<float>(x + (std::abs(x) * 0x1.8p-24 + 0x1p-120)); }
+
+// Three axes as two pairs, for arithmetic on all of them at once; the fourth element is spare.
+struct Axes {
+  Double2 xy, z;
+
+  Axes(Double2 a, Double2 b) : xy(a), z(b) {}
+  explicit Axes(const Vec3& v) : xy{v.x, v.y}, z{v.z, v.z} {}
+  Float4 rounded() const {
+    return Float4{static_cast<float>(xy[0]), static_cast<float>(xy[1]), static_cast<float>(z[0]), 0};
+  }
+  friend Axes operator+(Axes a, Axes b) { return {a.xy + b.xy, a.z + b.z}; }
+  friend Axes operator-(Axes a, Axes b) { return {a.xy - b.xy, a.z - b.z}; }
+  friend Axes operator*(Axes a, Axes b) { return {a.xy * b.xy, a.z * b.z}; }
+  friend Axes operator+(double s, Axes a) { return {s + a.xy, s + a.z}; }
+  friend Axes operator*(double s, Axes a) { return {s * a.xy, s * a.z}; }
+  friend Axes operator/(double s, Axes a) { return {s / a.xy, s / a.z}; }
+};
+
+Axes abs(Axes a) {
+  const auto positive = [](Double2 x) {
+    return reinterpret_cast<Double2>(reinterpret_cast<Long2>(x) & 0x7fffffffffffffff);
+  };
+  return {positive(a.xy), positive(a.z)};
+}
+// Of each axis `yes` where `chosen` is above 0, else `no`.
+Axes select(Axes chosen, Axes yes, Axes no) {
+  return {chosen.xy > 0.0 ? yes.xy : no.xy, chosen.z > 0.0 ? yes.z : no.z};
+}
+
+// Three lanes, each as a vector of its own.
+void spread(Float4 from, Float4 (&to)[3]) {
+  to[0] = all(from[0]);
+  to[1] = all(from[1]);
+  to[2] = all(from[2]);
+}
 
 }  // namespace
 
@@ -36,10 +73,11 @@ float floatAbove(double x) { return static_cast<float>(x + (std::abs(x) * 0x1.8p
 //    itself: one rounding is at most 2^-53 (|q| + |plane| + slack).  So start <= u.  A NaN (0 times infinity: a
 //    direction of 0 exactly on the widened plane) is ignored by the comparisons, and the axis does not clip.
 // 2. p = q' + start d is off by less than `slack` = 2^-50 (1 + |q| + |start d|).  near/farOrigin are p moved
-//    forward/backward along the ray by the slack and rounded to float in the same direction.  So the distance
-//    to each plane of each box is too small for the near planes, too large for the far ones, before rounding.
+//    forward/backward along the ray by twice the slack and 2^-22 |p|; the roundings to float on the way, of p,
+//    of the margin and of the sum, take less than 2^-23 |p| and a slack of it.  So the distance to each plane
+//    of each box is too small for the near planes, too large for the far ones, before rounding.
 // 3. (plane - origin) * inverse has three roundings to float, less than 2^-22 together.  nearInverse is
-//    shortened, farInverse lengthened by 2^-21.  A negative near becomes 0 by the comparison with 0; a
+//    shortened, farInverse lengthened by 2^-21, less one rounding.  A negative near becomes 0 by the comparison with 0; a
 //    negative far keeps its sign, and is a true miss.  What underflows is far smaller than the slack.
 // 4. |d| < 2^-60 on an axis (0 and -0 among them) is replaced by 2^-60: within the root box s <= 2 + 4 slack,
 //    the ray moves by less than the slack on that axis; a box that it touches has near < 0 and
@@ -60,35 +98,40 @@ Bvh::Entry Bvh::enter(const Vec3& origin, const Vec3& direction, double tMin, do
   ray.scale = stretch * scale_;
 
   double start = tMin * ray.scale, end = tMax * ray.scale;
-  double exactly[3];  // 1 / d
-  for (int axis = 0; axis < 3; ++axis) {
-    const double slack = 0x1p-50 * (1 + std::abs(q[axis]));
-    exactly[axis] = 1 / d[axis];
-    const double low = (box_.low[axis] - slack - q[axis]) * exactly[axis];
-    const double high = (box_.high[axis] + slack - q[axis]) * exactly[axis];
-    const double near = exactly[axis] > 0 ? low : high, far = exactly[axis] > 0 ? high : low;
-    start = near > start ? near : start;
-    end = far < end ? far : end;
-  }
+  const Axes q2(q), d2(d), low2(box_.low), high2(box_.high);
+  const Axes exactly = 1.0 / d2, far2 = abs(q2);
+  const Axes slack = 0x1p-50 * (1.0 + far2);
+  const Axes toLow = (low2 - slack - q2) * exactly, toHigh = (high2 + slack - q2) * exactly;
+  const Axes near = select(exactly, toLow, toHigh), far = select(exactly, toHigh, toLow);
+  const auto enterSlab = [&start, &end](double from, double to) {
+    start = from > start ? from : start;
+    end = to < end ? to : end;
+  };
+  enterSlab(near.xy[0], far.xy[0]);
+  enterSlab(near.xy[1], far.xy[1]);
+  enterSlab(near.z[0], far.z[0]);
   if (!(start <= end)) return Entry::kMissed;
   // Infinite only for a ray that stands still, where any number will do.
   start = std::clamp(start, -kLargest, kLargest);
   ray.start = start;
+  ray.setLimit(tMax);
 
-  for (int axis = 0; axis < 3; ++axis) {
-    const double step = start * d[axis];
-    const double p = q[axis] + step;
-    const double slack = 0x1p-50 * (1 + std::abs(q[axis]) + std::abs(step));
-    const double inverse = std::abs(d[axis]) > 0x1p-60 ? exactly[axis] : std::copysign(0x1p+60, d[axis]);
-    const bool up = inverse > 0;
-    ray.nearPlane[axis] = up ? axis : axis + 3;
-    ray.farPlane[axis] = up ? axis + 3 : axis;
-    const float below = floatBelow(p - slack), above = floatAbove(p + slack);
-    ray.nearOrigin[axis] = all(up ? above : below);
-    ray.farOrigin[axis] = all(up ? below : above);
-    ray.nearInverse[axis] = all(static_cast<float>(inverse * (1 - 0x1p-21)));
-    ray.farInverse[axis] = all(static_cast<float>(inverse * (1 + 0x1p-21)));
-  }
+  const Axes step = start * d2, p = q2 + step;
+  const Axes margin = 0x1p-22 * abs(p) + 0x1p-49 * (1.0 + far2 + abs(step));
+  const Float4 place = p.rounded(), moved = margin.rounded();
+  ray.direction = d2.rounded();
+  // Off the axes and the planes of the box: at least 2^-60, with its sign.
+  const Axes least(
+      Vec3{std::copysign(0x1p+60, d.x), std::copysign(0x1p+60, d.y), std::copysign(0x1p+60, d.z)});
+  const Float4 inverse = select(abs(d2) - Axes(Vec3{0x1p-60, 0x1p-60, 0x1p-60}), exactly, least).rounded();
+  const Float4 forward = inverse > Float4{} ? moved : -moved;
+  spread(place + forward, ray.nearOrigin);
+  spread(place - forward, ray.farOrigin);
+  spread(inverse * all(1 - 0x1p-21f), ray.nearInverse);
+  spread(inverse * all(1 + 0x1p-21f), ray.farInverse);
+  ray.octant = static_cast<std::uint32_t>(std::signbit(d.x)) |
+               static_cast<std::uint32_t>(std::signbit(d.y)) << 1 |
+               static_cast<std::uint32_t>(std::signbit(d.z)) << 2;
   return Entry::kEntered;
 }
 

@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "rayshade/base/bounds.h"
+#include "rayshade/optics/ray.h"
 
 namespace rayshade {
 
@@ -33,6 +34,21 @@ typedef std::int64_t Long2 __attribute__((vector_size(16)));
 inline Float4 minimum(Float4 a, Float4 b) { return a < b ? a : b; }
 inline Float4 maximum(Float4 a, Float4 b) { return a > b ? a : b; }
 inline Float4 all(float x) { return Float4{x, x, x, x}; }
+
+// A ray and the part of it that is of interest.
+struct RayQuery {
+  LocalRay ray;
+  double tMin = 0, tMax = kInfinity;
+};
+
+// Rays of a bundle: bit i stands for the i-th.
+using RaySet = std::uint32_t;
+inline constexpr std::size_t kBundleSize = 32;
+
+template <class Use>
+void forEachRay(RaySet rays, Use&& use) {
+  for (; rays != 0; rays &= rays - 1) use(static_cast<std::size_t>(std::countr_zero(rays)));
+}
 
 class Bvh {
  public:
@@ -62,6 +78,18 @@ class Bvh {
     return traverse<false>(origin, direction, tMin, tMax, leaf);
   }
 
+  // The same for up to kBundleSize rays at once: a node is fetched once for all rays that come to it.  Calls
+  // leaf(first, count, rays), which answers with the rays whose tMax it has lowered.
+  template <class Leaf>
+  void nearest(std::span<RayQuery> bundle, Leaf&& leaf) const {
+    traverseTogether<true>(bundle, leaf);
+  }
+  // Here leaf(first, count, rays) answers with the rays that have found what they look for.
+  template <class Leaf>
+  void any(std::span<RayQuery> bundle, Leaf&& leaf) const {
+    traverseTogether<false>(bundle, leaf);
+  }
+
  private:
   // A reference to a child: the number of a node, or a leaf: kLeaf | (count - 1) << kFirstBits | first.
   static constexpr std::uint32_t kLeaf = 0x80000000u;
@@ -80,10 +108,45 @@ class Bvh {
   // both sides.  s = t scale - start is its parameter, 0 at the root box.
   struct BoxRay {
     Float4 nearOrigin[3], farOrigin[3], nearInverse[3], farInverse[3];
-    int nearPlane[3], farPlane[3];
+    Float4 limit;      // s of the end
+    Float4 direction;  // x y z, roughly
     double scale, start;
+    std::uint32_t octant;  // bit i: its direction is negative along axis i
 
-    float limit(double tMax) const { return static_cast<float>((tMax * scale - start) * (1 + 0x1p-22)); }
+    void setLimit(double tMax) { limit = all(static_cast<float>((tMax * scale - start) * (1 + 0x1p-22))); }
+  };
+
+  // The planes of four boxes where rays of one octant enter and leave.
+  struct Sides {
+    Float4 nearX, nearY, nearZ, farX, farY, farZ;
+    Sides(const Node& node, std::uint32_t octant) {
+      const std::uint32_t x = (octant & 1) != 0 ? 3 : 0, y = (octant & 2) != 0 ? 3 : 0,
+                          z = (octant & 4) != 0 ? 3 : 0;
+      nearX = node.plane[x];
+      nearY = node.plane[1 + y];
+      nearZ = node.plane[2 + z];
+      farX = node.plane[3 - x];
+      farY = node.plane[4 - y];
+      farZ = node.plane[5 - z];
+    }
+  };
+
+  // Which of four boxes the ray touches before its limit: all bits of a lane or none; and where it enters them.
+  static Int4 touchedBoxes(const Sides& sides, const BoxRay& ray, Float4& enters) {
+    const Float4 nearX = (sides.nearX - ray.nearOrigin[0]) * ray.nearInverse[0];
+    const Float4 nearY = (sides.nearY - ray.nearOrigin[1]) * ray.nearInverse[1];
+    const Float4 nearZ = (sides.nearZ - ray.nearOrigin[2]) * ray.nearInverse[2];
+    const Float4 farX = (sides.farX - ray.farOrigin[0]) * ray.farInverse[0];
+    const Float4 farY = (sides.farY - ray.farOrigin[1]) * ray.farInverse[1];
+    const Float4 farZ = (sides.farZ - ray.farOrigin[2]) * ray.farInverse[2];
+    enters = maximum(maximum(nearX, nearY), maximum(nearZ, Float4{}));
+    return enters <= minimum(minimum(farX, farY), minimum(farZ, ray.limit));
+  }
+
+  struct LeafItems {
+    std::uint32_t first, count;
+    explicit LeafItems(std::uint32_t child)
+        : first(child & ((1u << kFirstBits) - 1)), count(((child & ~kLeaf) >> kFirstBits) + 1) {}
   };
 
   enum class Entry { kMissed, kEntered, kEverything };
@@ -96,6 +159,10 @@ class Bvh {
   template <bool kSorted, class Leaf>
   bool traverse(const Vec3& origin, const Vec3& direction, double tMin, const double& tMax,
                 Leaf&& leaf) const;
+  template <bool kSorted, class Leaf>
+  bool traverseFrom(std::uint32_t top, BoxRay& ray, const double& tMax, Leaf&& leaf) const;
+  template <bool kSorted, class Leaf>
+  void traverseTogether(std::span<RayQuery> bundle, Leaf&& leaf) const;
 
   std::vector<Node> nodes_;
   std::vector<std::uint32_t> order_;  // items of leaves, unbounded items, empty items
@@ -119,25 +186,21 @@ bool Bvh::traverse(const Vec3& origin, const Vec3& direction, double tMin, const
     case Entry::kEntered:
       break;
   }
+  return traverseFrom<kSorted>(root_, ray, tMax, leaf);
+}
 
+template <bool kSorted, class Leaf>
+bool Bvh::traverseFrom(std::uint32_t top, BoxRay& ray, const double& tMax, Leaf&& leaf) const {
   // An entry is near distance (bits of a non-negative float, which sort as integers) << 32 | child.
   std::uint64_t stack[kStackSize];
   int size = 0;
-  std::uint32_t here = root_;
-  float limit = ray.limit(tMax);
+  std::uint32_t here = top;
   for (;;) {
     if ((here & kLeaf) == 0) {
       const Node& node = nodes_[here];
-      const Float4 zero{};
-      const auto near = [&](int axis) {
-        return (node.plane[ray.nearPlane[axis]] - ray.nearOrigin[axis]) * ray.nearInverse[axis];
-      };
-      const auto far = [&](int axis) {
-        return (node.plane[ray.farPlane[axis]] - ray.farOrigin[axis]) * ray.farInverse[axis];
-      };
-      const Float4 enters = maximum(maximum(near(0), near(1)), maximum(near(2), zero));
-      const Float4 leaves = minimum(minimum(far(0), far(1)), minimum(far(2), all(limit)));
-      const Int4 touched = (enters <= leaves) & Int4{1, 2, 4, 8};
+      const Sides sides(node, ray.octant);
+      Float4 enters;
+      const Int4 touched = touchedBoxes(sides, ray, enters) & Int4{1, 2, 4, 8};
       const auto halves =
           reinterpret_cast<Long2>(touched);  // stays in registers, unlike bit_cast to an array
       const auto either = static_cast<std::uint64_t>(halves[0] | halves[1]);
@@ -165,17 +228,89 @@ bool Bvh::traverse(const Vec3& origin, const Vec3& direction, double tMin, const
         continue;
       }
     } else {
-      const std::uint32_t first = here & ((1u << kFirstBits) - 1);
-      const std::uint32_t count = ((here & ~kLeaf) >> kFirstBits) + 1;
-      if (leaf(first, count)) return true;
-      limit = ray.limit(tMax);
+      const LeafItems items(here);
+      if (leaf(items.first, items.count)) return true;
+      ray.setLimit(tMax);
     }
     std::uint64_t entry;
     do {
       if (size == 0) return false;
       entry = stack[--size];
-    } while (std::bit_cast<float>(static_cast<std::uint32_t>(entry >> 32)) > limit);
+    } while (std::bit_cast<float>(static_cast<std::uint32_t>(entry >> 32)) > ray.limit[0]);
     here = static_cast<std::uint32_t>(entry);
+  }
+}
+
+template <bool kSorted, class Leaf>
+void Bvh::traverseTogether(std::span<RayQuery> bundle, Leaf&& leaf) const {
+  RaySet waiting = static_cast<RaySet>((std::uint64_t{1} << bundle.size()) - 1);
+  const auto visitLeaf = [&](std::uint32_t first, std::uint32_t count, RaySet rays) {
+    const RaySet answer = leaf(first, count, rays);
+    if constexpr (!kSorted) waiting &= ~answer;
+    return answer;
+  };
+  if (unbounded_ > 0) visitLeaf(inTree_, unbounded_, waiting);
+  if (inTree_ == 0) return;
+  BoxRay rays[kBundleSize];
+  RaySet octants[8] = {};
+  forEachRay(waiting, [&](std::size_t i) {
+    const RayQuery& query = bundle[i];
+    const Entry entry = enter(query.ray.origin, query.ray.direction, query.tMin, query.tMax, rays[i]);
+    if (entry == Entry::kEverything) visitLeaf(0u, inTree_, RaySet{1} << i);
+    if (entry == Entry::kEntered) octants[rays[i].octant] |= RaySet{1} << i;
+  });
+
+  struct Open {
+    float depth;  // of the near corner along one of the rays
+    std::uint32_t child;
+    RaySet rays;
+  };
+  Open stack[kStackSize];
+  for (std::uint32_t octant = 0; octant < 8; ++octant) {
+    if (octants[octant] == 0) continue;
+    int size = 0;
+    stack[size++] = {0, root_, octants[octant]};
+    while (size > 0) {
+      Open here = stack[--size];
+      here.rays &= waiting;
+      if (here.rays == 0) continue;
+      if ((here.child & kLeaf) != 0) {
+        const LeafItems items(here.child);
+        const RaySet answer = visitLeaf(items.first, items.count, here.rays);
+        if constexpr (kSorted) forEachRay(answer, [&](std::size_t i) { rays[i].setLimit(bundle[i].tMax); });
+        continue;
+      }
+      if (std::has_single_bit(here.rays)) {
+        const auto only = static_cast<std::size_t>(std::countr_zero(here.rays));
+        traverseFrom<kSorted>(here.child, rays[only], bundle[only].tMax,
+                              [&](std::uint32_t first, std::uint32_t count) {
+                                return visitLeaf(first, count, here.rays) != 0 && !kSorted;
+                              });
+        continue;
+      }
+      const Node& node = nodes_[here.child];
+      const Sides sides(node, octant);
+      Int4 touching{};  // for each child the set of the rays that come to it
+      forEachRay(here.rays, [&](std::size_t i) {
+        const auto bit = static_cast<std::int32_t>(RaySet{1} << i);
+        Float4 enters;
+        touching |= touchedBoxes(sides, rays[i], enters) & Int4{bit, bit, bit, bit};
+      });
+      Float4 depth{};
+      if constexpr (kSorted) {
+        const Float4 along = rays[std::countr_zero(here.rays)].direction;
+        depth = sides.nearX * along[0] + sides.nearY * along[1] + sides.nearZ * along[2];
+      }
+      const int base = size;
+      for (int lane = 0; lane < 4; ++lane) {
+        if (touching[lane] == 0) continue;
+        const Open open{depth[lane], node.child[lane], static_cast<RaySet>(touching[lane])};
+        int at = size++;
+        if constexpr (kSorted)
+          for (; at > base && stack[at - 1].depth < open.depth; --at) stack[at] = stack[at - 1];
+        stack[at] = open;
+      }
+    }
   }
 }
 

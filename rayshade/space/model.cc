@@ -142,7 +142,8 @@ Hit visit(const Model& model, const Region& region, const Ray& ray, double tMin,
 
 Obstruction obstruction(const Model& model, const Region& region, const Ray& ray, double tMin, double tExit,
                         ObjectIndex& occluder) {
-  Probe probe(model, {ray.origin, ray.direction, 1}, ray.moment);
+  const LocalRay local{ray.origin, ray.direction, 1};
+  Probe probe(model, local, ray.moment);
   if (occluder != kNone) {
     const Target target = model.target(occluder);
     if (target.opaque && probe.intersect(target, tMin) < tExit) return {true, false, 1};
@@ -196,6 +197,8 @@ HitPath pathTo(const Model& model, const Ray& ray, const Hit& hit) {
 
 double rootAt(const Model& model, const PathStep& step, double t) {
   const PlacedObject& object = model.store().object(step.object);
+  // Then t is the shape's own root: no rounding lies between the two.
+  if (step.ray.scale == 1) return t;
   return withShape(model.store(), object, [&](const auto& shape) {
     const double local = t * step.ray.scale;
     // A few ulps below: t came from this root by a division.

@@ -38,7 +38,7 @@ inline constexpr BodyKind kKindOf = [] {
 
 class Probe {
  public:
-  // `ray` in the space of the container.
+  // `ray` in the space of the container; it must outlive the probe.
   Probe(const Model& model, const LocalRay& ray, const Moment& moment)
       : model_(model), ray_(ray), moment_(moment) {}
 
@@ -58,7 +58,7 @@ class Probe {
   const LocalRay& rayIn(FrameIndex frame);
 
   const Model& model_;
-  LocalRay ray_;
+  const LocalRay& ray_;
   Moment moment_;
   // Many objects in a row share a frame: the last local ray is kept.
   FrameIndex lastFrame_ = 0;

@@ -1,0 +1,94 @@
+// Rays in bundles get the answers that they get alone.
+//
+// Bundles of all sizes, from alike rays (as from one eye) to rays that have nothing in common, through random
+// scenes with all kinds of objects, glass and motion among them.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rayshade/space/bundle.h"
+
+#include <gtest/gtest.h>
+
+#include "rayshade/render.h"
+#include "tests/support/random_scene.h"
+#include "tests/support/render_text.h"
+
+namespace rayshade {
+namespace {
+
+class Numbers {
+ public:
+  explicit Numbers(std::uint64_t seed) : key_{mixBits(seed)} {}
+  double real(double low, double high) {
+    return low + (high - low) * uniform(key_, Dimension::jitterX, ++count_);
+  }
+  Vec3 point(double low, double high) {
+    const double x = real(low, high), y = real(low, high), z = real(low, high);
+    return {x, y, z};
+  }
+
+ private:
+  RandomKey key_;
+  std::uint32_t count_ = 0;
+};
+
+// Rays from one point into directions that differ by `spread`; each component may be exactly 0.
+std::vector<Ray> raysOf(Numbers& numbers, std::size_t count, double spread) {
+  std::vector<Ray> rays(count);
+  const Vec3 eye = numbers.point(-8, 8), middle = numbers.point(-1, 1);
+  for (Ray& ray : rays) {
+    ray.origin = eye + spread * numbers.point(-1, 1);
+    Vec3 direction = middle + spread * numbers.point(-1, 1);
+    if (numbers.real(0, 1) < 0.1) direction.x = 0;
+    if (numbers.real(0, 1) < 0.1) direction.z = -0.0;
+    ray.direction = normalize(direction);
+    ray.moment = {numbers.real(0, 1), 0};
+  }
+  return rays;
+}
+
+TEST(Bundle, EveryRayFindsWhatItFindsAlone) {
+  std::size_t found = 0, stopped = 0, filtered = 0;
+  for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+    const Job job = jobOfText(randomScene(seed));
+    Scene scene;
+    const SceneHead head = job.read(scene.model.store());
+    scene.setting = head.setting;
+    scene.prepare(exposureOf(head.picture, 0));
+    Numbers numbers(seed);
+    for (std::size_t round = 0; round < 24; ++round) {
+      const double spreads[] = {0.01, 0.3, 3};
+      const std::vector<Ray> rays =
+          raysOf(numbers, 1 + (seed * 7 + round * 5) % kBundleSize, spreads[round % 3]);
+      std::vector<Segment> segments;
+      for (const Ray& ray : rays) {
+        const double begin = round % 2 == 0 ? 0 : numbers.real(0, 2);
+        segments.push_back({&ray, begin, round % 4 < 2 ? kInfinity : begin + numbers.real(0, 12)});
+      }
+      std::vector<Hit> hits(rays.size());
+      visitTogether(scene.model, scene.space(), segments, hits);
+      std::vector<Obstruction> met(rays.size());
+      obstructionTogether(scene.model, scene.space(), segments, met);
+      for (std::size_t i = 0; i < rays.size(); ++i) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed << " round " << round << " ray " << i);
+        const Hit alone = visit(scene.model, scene.space(), rays[i], segments[i].tMin, segments[i].tEnd);
+        ASSERT_EQ(hits[i].t, alone.t);
+        ASSERT_EQ(hits[i].object, alone.object);
+        ObjectIndex occluder = kNone;
+        const Obstruction one =
+            obstruction(scene.model, scene.space(), rays[i], segments[i].tMin, segments[i].tEnd, occluder);
+        ASSERT_EQ(met[i].opaque, one.opaque);
+        if (!one.opaque) {
+          ASSERT_EQ(met[i].transparent, one.transparent);
+          filtered += one.transparent;
+        }
+        found += alone.found();
+        stopped += one.opaque;
+      }
+    }
+  }
+  EXPECT_GT(found, 1000u);
+  EXPECT_GT(stopped, 500u);
+  EXPECT_GT(filtered, 50u);
+}
+
+}  // namespace
+}  // namespace rayshade
