@@ -7,9 +7,8 @@ namespace rayshade {
 namespace {
 
 // Nothing is asked for that costs more than sending all rays of the pyramid on, were it not that other pyramids will use
-// the cell too: so many are expected to.
+// the cell too, see RayWorker::expectedUses().
 constexpr double kBytesPerRay = 130;
-constexpr double kExpectedPyramids = 64;
 
 double distanceTo(const Bounds& box, Vec3 p) {
   Vec3 outside;
@@ -119,6 +118,7 @@ std::size_t PyramidTask::beforeHorizon(const std::vector<CellId>& cells, std::si
   const TraceSetting& at = worker_.at();
   const Horizon& horizon = at.policy.horizon;
   std::size_t n = 0;
+  std::uint64_t bytes = 0;
   for (; n < cells.size(); ++n) {
     const CellId cell = cells[n];
     switch (horizon.kind) {
@@ -129,8 +129,11 @@ std::size_t PyramidTask::beforeHorizon(const std::vector<CellId>& cells, std::si
         if (distanceTo(boundsOf(at.tree, cell), exhibition_.view.eye) > horizon.value) return n;
         break;
       case Horizon::Kind::automatic:
+        // The cells of all pyramids in hand stay in the cache until they have been traced.
+        bytes += at.cellBytes[static_cast<std::size_t>(cell)];
+        if (bytes > at.policy.cacheBytes / kAhead) return n;
         if (!worker_.isHere(cell) && at.cellBytes[static_cast<std::size_t>(cell)] >
-                                         kBytesPerRay * kExpectedPyramids * static_cast<double>(rays))
+                                         kBytesPerRay * worker_.expectedUses() * static_cast<double>(rays))
           return n;
         break;
     }

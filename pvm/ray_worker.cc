@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pvm/ray_worker.h"
 
+#include <algorithm>
+#include <numeric>
+
 namespace rayshade {
 namespace {
 
 // An estimate of a ray on the wire with the answer that comes back: a shadow ray takes 90 to 110 bytes, an answer 14 to 38.
 constexpr double kBytesPerForward = 130;
-// How many bundles are expected to use a cell once it is here: shadow rays of neighbouring hits go the same way.
+// How many pyramids or bundles are expected to use a cell once it is here, if it stays: neighbours go the same way.
 constexpr double kExpectedUses = 64;
 
 }  // namespace
@@ -23,6 +26,10 @@ void RayWorker::begin(TraceSetting setting, std::uint32_t finder) {
   toAsk_.clear();
   queued_.clear();
   cache_.begin(at_.policy.cacheBytes);
+  // What does not fit is thrown out before it has been used as often.
+  const double model = std::accumulate(at_.cellBytes.begin(), at_.cellBytes.end(), 0.0);
+  expectedUses_ =
+      kExpectedUses * std::min(1.0, static_cast<double>(at_.policy.cacheBytes) / std::max(model, 1.0));
 }
 
 Ground RayWorker::cell(CellId cell) {
@@ -53,7 +60,7 @@ void RayWorker::askMore() {
 
 bool RayWorker::fetchingPays(CellId missing, std::size_t rays) const {
   return at_.cellBytes[static_cast<std::size_t>(missing)] <=
-         kBytesPerForward * kExpectedUses * static_cast<double>(rays);
+         kBytesPerForward * expectedUses() * static_cast<double>(rays);
 }
 
 void RayWorker::follow(const ShadowHead& head, std::span<const ShadowTravel> rays, const Model& model,

@@ -106,6 +106,9 @@ class RayWorker : public GroundSource {
   void follow(const ShadowHead& head, std::span<const ShadowTravel> rays, const Model& model,
               const VoxelSource& voxels);
 
+  // How often a fetched cell will be used, about: the less of the model the cache can hold, the less.
+  double expectedUses() const { return expectedUses_; }
+
   // Asks for a cell unless it is here or asked for already.
   void want(CellId cell);
   bool isEmpty(CellId cell) const { return at_.cellBytes[static_cast<std::size_t>(cell)] == 0; }
@@ -162,6 +165,7 @@ class RayWorker : public GroundSource {
   std::vector<std::uint64_t> numbers_;                             // of the next record at each shade task
   std::unordered_map<std::uint32_t, std::vector<Bundle>> parked_;  // by the cell they wait for
   std::size_t parkedCount_ = 0;
+  double expectedUses_ = 0;
   std::uint64_t combined_ = 0;
   std::unordered_set<std::uint32_t> asked_;   // cells on their way
   std::deque<CellId> toAsk_;                  // more than may be on their way
