@@ -4,7 +4,8 @@
 #   make demo         install what is missing, render a picture over PVM, compare it with the sequential one
 #   make check        install what is missing, build, run all tests
 #   make install PREFIX=/usr/local        programs into PREFIX/bin, and where `pvm` looks by convention
-#   make check-sanitized   all tests once more, with clang's sanitizers for addresses and undefined behaviour
+#   make check-sanitized   the tests of what reads bytes of others or juggles tasks, under clang's sanitizers for
+#                     addresses and undefined behaviour; all tests: make SAN=address,undefined check
 #   make fuzz         the fuzzers, FUZZ_SECONDS each, in the same build tree
 #   make bench        docs/speed-and-error.md: measures error against time (a quarter of an hour)
 #   make benches      the other measuring programs into bin/bench/
@@ -45,6 +46,10 @@ tasks := $(filter-out $(pvm_door) $(pvm_programs),$(call objects,$(call find_sou
 pvm_tests := $(call objects,tests/parallel/pvm_test.cc tests/parallel/pvm_suite_test.cc)
 link_test := $(call objects,tests/parallel/link_test.cc)
 tests := $(filter-out $(pvm_tests) $(link_test),$(call objects,$(call find_sources,tests/unit tests/property tests/golden tests/parallel tests/fault tests/support) $(wildcard tests/fuzz/any_*.cc)))
+# What sanitizers are most likely to find fault with: whoever reads bytes of others or juggles tasks.
+guarded_tests := $(call objects,$(foreach name,archive expression fuzz_corpus image_file in_flight local_trace messages object_cache object_stream outbox parser shade_ledger spool tokens wire_format,tests/unit/$(name)_test.cc) \
+  tests/fault/fault_test.cc tests/parallel/equivalence_test.cc tests/parallel/schedules_test.cc \
+  $(filter-out tests/support/oracle.cc,$(call find_sources,tests/support)) $(wildcard tests/fuzz/any_*.cc))
 fuzzers := $(patsubst tests/fuzz/%.cc,$(BIN)/%,$(wildcard tests/fuzz/*_fuzz.cc))
 fuzzed := $(call objects,$(wildcard tests/fuzz/any_*.cc))
 benches := $(patsubst tests/bench/%.cc,$(BIN)/bench/%,$(call find_sources,tests/bench))
@@ -53,7 +58,7 @@ roles := host voxel-trace pyramid-trace shade
 programs := $(BIN)/rayshade $(BIN)/rayshade-error $(BIN)/spd $(roles:%=$(BIN)/rayshade-%)
 test_programs := $(BIN)/rayshade-tests $(BIN)/link-tests $(BIN)/pvm-tests
 
-.PHONY: all demo check check-sanitized test install fuzz fuzzers bench benches experiments format clean packages
+.PHONY: all demo check check-sanitized test guarded install fuzz fuzzers bench benches experiments format clean packages
 all: $(programs)
 
 $(BUILD)/%.o: %.cc
@@ -82,6 +87,8 @@ $(BIN)/rayshade-voxel-trace $(BIN)/rayshade-pyramid-trace $(BIN)/rayshade-shade:
 	ln -f $< $@
 $(BIN)/rayshade-tests: $(tests) $(BUILD)/libtasks.a $(BUILD)/libspd.a $(BUILD)/libcore.a
 	$(call link,-lgtest -lgtest_main -lpthread)
+$(BIN)/guarded-tests: $(guarded_tests) $(BUILD)/libtasks.a $(BUILD)/libspd.a $(BUILD)/libcore.a
+	$(call link,-lgtest -lgtest_main -lpthread)
 $(BIN)/link-tests: $(link_test) $(pvm_door) $(BUILD)/libtasks.a $(BUILD)/libcore.a
 	$(call link,-lgtest -lpthread -lpvm3)
 $(BIN)/pvm-tests: $(pvm_tests) $(call objects,tests/support/program.cc tests/support/suite.cc) $(pvm_door) $(BUILD)/libtasks.a $(BUILD)/libcore.a
@@ -103,9 +110,12 @@ check: packages
 	@$(MAKE) --no-print-directory -j2 SAN=$(SAN) test
 check-sanitized:
 	@tests/support/install_packages nice
-	@$(MAKE) --no-print-directory -j2 $(sanitized) test
+	@$(MAKE) --no-print-directory -j2 $(sanitized) guarded
 test: $(programs) $(test_programs)
 	@tests/support/run_tests $(BIN)
+
+guarded: $(BIN)/guarded-tests
+	@PROGRAMS=guarded-tests RAYSHADE_TEST_SEEDS=20 tests/support/run_tests $(BIN)
 
 benches: $(benches)
 

@@ -53,7 +53,7 @@ class Writer {
  public:
   static constexpr bool kReading = false;
 
-  explicit Writer(Bytes& out) : out_(out), used_(out.size()) { out_.resize(out_.capacity()); }
+  explicit Writer(Bytes& out) : out_(out), used_(out.size()) {}
   Writer(const Writer&) = delete;
   Writer& operator=(const Writer&) = delete;
   ~Writer() { out_.resize(used_); }
@@ -76,9 +76,10 @@ class Writer {
     if (used_ > out_.size()) grow();
     return out_.data() + at;
   }
-  [[gnu::noinline]] void grow() {
-    out_.reserve(std::max(2 * out_.size(), used_));
-    out_.resize(out_.capacity());
+  // Some more than is wanted, so that it is seldom called.
+  void grow() {
+    constexpr std::size_t kAhead = 256;
+    out_.resize(used_ + kAhead);
   }
   void raw(const void* from, std::size_t size) {
     std::byte* to = room(size);
