@@ -184,20 +184,17 @@ void PvmLink::takeRouteNotices() {
 // other do not wait for ever.
 bool PvmLink::waitForRoom(TaskId task) {
   for (;;) {
-    if (leaves(task)) return false;
-    pollfd room{peers_[task].route, POLLOUT | POLLRDHUP, 0};
-    if (room.fd >= 0) {  // as a rule that is all: libpvm need not be asked whether the route stands
-      ::poll(&room, 1, 0);
-      if ((room.revents & ~POLLOUT) != 0) {
-        showsSignOfDeath(task);
-        return false;
-      }
-      if (room.revents != 0) return true;
-    }
     takeRouteNotices();
     if (leaves(task)) return false;
-    if (peers_[task].route < 0) return true;
-    std::vector<pollfd> sockets{{peers_[task].route, POLLOUT | POLLRDHUP, 0}};
+    const int route = peers_[task].route;
+    if (route < 0) return true;
+    std::vector<pollfd> sockets{{route, POLLOUT | POLLRDHUP, 0}};
+    ::poll(sockets.data(), 1, 0);
+    if ((sockets[0].revents & ~POLLOUT) != 0) {
+      showsSignOfDeath(task);
+      return false;
+    }
+    if (sockets[0].revents != 0) return true;
     int* descriptors = nullptr;
     const int count = check(pvm_getfds(&descriptors), "getfds");
     for (int i = 0; i < count; ++i) sockets.push_back({descriptors[i], POLLIN, 0});
