@@ -115,7 +115,7 @@ test: $(programs) $(test_programs)
 	@tests/support/run_tests $(BIN)
 
 guarded: $(BIN)/guarded-tests
-	@PROGRAMS=guarded-tests RAYSHADE_TEST_SEEDS=20 tests/support/run_tests $(BIN)
+	@PROGRAMS=guarded-tests tests/support/run_tests $(BIN)
 
 benches: $(benches)
 
