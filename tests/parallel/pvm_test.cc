@@ -135,13 +135,13 @@ TEST_F(Pvm, PicturesAreThoseOfTheSequentialProgramByteForByte) {
   struct Case {
     const char *scene, *tasks, *picture;
   };
-  for (const Case& c :
-       {Case{"-S 1 -R 80 60 scenes/gallery/chess.ray", "--voxels 1 --shades 1", "a.png"},
-        Case{"-S 1 -R 80 60 scenes/gallery/chess.ray", "--voxels 5 --shades 2", "b.pfm"},
-        Case{"-S 1 -R 60 60 scenes/gallery/glass-and-mirrors.ray", "--voxels 4 --shades 3 --window 50",
-             "c.pfm"},
-        Case{"-S 1 -R 60 40 scenes/gallery/nautilus.ray", "--voxels 3 --voxels-per-task 2 --split cost", "d.ppm"},
-        Case{"-S 1 -R 60 40 scenes/gallery/pavilion.ray", "", "e.png"}}) {
+  for (const Case& c : {Case{"-S 1 -R 80 60 scenes/gallery/chess.ray", "--voxels 1 --shades 1", "a.png"},
+                        Case{"-S 1 -R 80 60 scenes/gallery/chess.ray", "--voxels 5 --shades 2", "b.pfm"},
+                        Case{"-S 1 -R 60 60 scenes/gallery/glass-and-mirrors.ray",
+                             "--voxels 4 --shades 3 --window 50", "c.pfm"},
+                        Case{"-S 1 -R 60 40 scenes/gallery/nautilus.ray",
+                             "--voxels 3 --voxels-per-task 2 --split cost", "d.ppm"},
+                        Case{"-S 1 -R 60 40 scenes/gallery/pavilion.ray", "", "e.png"}}) {
     SCOPED_TRACE(std::string(c.scene) + " " + c.tasks);
     const std::string expected = sequential(c.scene, std::string("sequential-") + c.picture);
     const Finished done = startHost(std::string("-q ") + c.tasks + " " + c.scene, c.picture)->wait(kPatience);
