@@ -6,10 +6,6 @@
 namespace rayshade {
 namespace {
 
-// Nothing is asked for that costs more than sending all rays of the pyramid on, were it not that other pyramids will use
-// the cell too, see RayWorker::expectedUses().
-constexpr double kBytesPerRay = 130;
-
 double distanceTo(const Bounds& box, Vec3 p) {
   Vec3 outside;
   for (int axis = 0; axis < 3; ++axis)
@@ -132,9 +128,7 @@ std::size_t PyramidTask::beforeHorizon(const std::vector<CellId>& cells, std::si
         // The cells of all pyramids in hand stay in the cache until they have been traced.
         bytes += at.cellBytes[static_cast<std::size_t>(cell)];
         if (bytes > at.policy.cacheBytes / kAhead) return n;
-        if (!worker_.isHere(cell) && at.cellBytes[static_cast<std::size_t>(cell)] >
-                                         kBytesPerRay * worker_.expectedUses() * static_cast<double>(rays))
-          return n;
+        if (!worker_.isHere(cell) && !worker_.fetchingPays(cell, rays)) return n;
         break;
     }
   }

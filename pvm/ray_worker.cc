@@ -60,7 +60,7 @@ void RayWorker::askMore() {
 
 bool RayWorker::fetchingPays(CellId missing, std::size_t rays) const {
   return at_.cellBytes[static_cast<std::size_t>(missing)] <=
-         kBytesPerForward * expectedUses() * static_cast<double>(rays);
+         kBytesPerForward * expectedUses_ * static_cast<double>(rays);
 }
 
 void RayWorker::follow(const ShadowHead& head, std::span<const ShadowTravel> rays, const Model& model,

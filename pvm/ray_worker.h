@@ -106,8 +106,8 @@ class RayWorker : public GroundSource {
   void follow(const ShadowHead& head, std::span<const ShadowTravel> rays, const Model& model,
               const VoxelSource& voxels);
 
-  // How often a fetched cell will be used, about: the less of the model the cache can hold, the less.
-  double expectedUses() const { return expectedUses_; }
+  // Is fetching the cell expected to move fewer bytes than sending on so many rays that come to it?
+  bool fetchingPays(CellId missing, std::size_t rays) const;
 
   // Asks for a cell unless it is here or asked for already.
   void want(CellId cell);
@@ -143,7 +143,6 @@ class RayWorker : public GroundSource {
 
   void traceBundle(Bundle&& bundle, const LightSource& light);
   void park(Bundle&& bundle, CellId missing, const LightSource* light);
-  bool fetchingPays(CellId missing, std::size_t rays) const;
   void resume(Bundle&& bundle);
   void askMore();
 
@@ -165,7 +164,7 @@ class RayWorker : public GroundSource {
   std::vector<std::uint64_t> numbers_;                             // of the next record at each shade task
   std::unordered_map<std::uint32_t, std::vector<Bundle>> parked_;  // by the cell they wait for
   std::size_t parkedCount_ = 0;
-  double expectedUses_ = 0;
+  double expectedUses_ = 0;  // of a fetched cell: the less of the model the cache can hold, the fewer
   std::uint64_t combined_ = 0;
   std::unordered_set<std::uint32_t> asked_;   // cells on their way
   std::deque<CellId> toAsk_;                  // more than may be on their way
