@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rayshade/render.h"
 
+#include <array>
+#include <memory>
+
+#include "rayshade/optics/refraction.h"
 #include "rayshade/shading/evaluate.h"
 #include "rayshade/space/bundle.h"
 
@@ -46,49 +50,77 @@ namespace {
 // Traces rays by recursion, a bundle at a time: neighbouring samples with each other, and so what comes of them.
 class Tracer {
  public:
-  Tracer(const Scene& scene, TraceCounts& counts)
-      : scene_(scene), counts_(counts), lightPoints_(lightPointCount(scene.setting)) {}
+  Tracer(const Scene& scene, TraceCounts& counts) : scene_(scene), setting_(scene.setting), counts_(counts) {}
 
   // What each of at most kBundleSize rays sees.
-  void trace(std::span<const Ray> rays, std::span<Color> seen) {
-    const Setting& setting = scene_.setting;
-    Hit hits[kBundleSize];
-    follow(rays, hits);
-    std::vector<Shaded> shaded;
-    shaded.reserve(rays.size());
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-      if (hits[i].found()) {
-        shaded.emplace_back(scene_, rays[i], hits[i], seen[i]);
-      } else {
-        seen[i] = missed(rays[i], setting);
-      }
-    }
-    for (std::size_t point = 0; point < lightPoints_; ++point) light(shaded, point);
-    goOn(shaded, &Secondary::transmitted, &Gathered::transmitted, counts_.transmittedRays);
-    goOn(shaded, &Secondary::reflected, &Gathered::reflected, counts_.reflectedRays);
-    for (const Shaded& at : shaded)
-      at.seen = combine(describe(at.ray, at.t, at.point, at.spawned, setting), at.gathered, setting,
-                        at.spawned.samples);
-  }
+  void trace(std::span<const Ray> rays, std::span<Color> seen) { trace(rays, seen, 0); }
 
  private:
-  // A hit and what comes of it.
+  // A hit, and the colour that it has so far.  Colours are added in the order of combine(), to the same bits.
   struct Shaded {
-    Shaded(const Scene& scene, const Ray& ray, const Hit& hit, Color& seen)
-        : ray(ray),
-          seen(seen),
-          t(hit.t),
-          point(evaluateSurface(scene.model, hit, ray, scene.setting)),
-          spawned(spawnSecondary(ray, point, scene.setting)) {
-      gathered.light.resize(spawned.lit.size());
-    }
-    const Ray& ray;
-    Color& seen;
+    const Ray* ray;
+    Color* seen;
     double t;
     SurfacePoint point;
-    Secondary spawned;
-    Gathered gathered;
+    Facing facing;
+    Color sum;
   };
+  // A ray that goes on from a hit, and what its colour weighs there.
+  struct OnwardRay {
+    std::size_t from;
+    Color weight;
+  };
+  struct OnwardBundle {
+    std::vector<Ray> rays;
+    std::vector<OnwardRay> goals;
+    void clear() {
+      rays.clear();
+      goals.clear();
+    }
+    void add(std::optional<Ray>&& ray, std::size_t from, Color weight) {
+      if (!ray) return;
+      rays.push_back(std::move(*ray));
+      goals.push_back({from, weight});
+    }
+  };
+  // What is needed at one depth of the recursion; kept, so that no ray takes memory.
+  struct Stage {
+    std::array<Shaded, kBundleSize> room;
+    OnwardBundle transmitted, reflected;
+  };
+
+  void trace(std::span<const Ray> rays, std::span<Color> seen, std::size_t depth) {
+    if (depth == stages_.size()) stages_.push_back(std::make_unique<Stage>());
+    Stage& stage = *stages_[depth];
+    Hit hits[kBundleSize];
+    follow(rays, hits);
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      if (hits[i].found()) {
+        shade(rays[i], hits[i], seen[i], stage.room[count++]);
+      } else {
+        seen[i] = missed(rays[i], setting_);
+      }
+    }
+    if (count == 0) return;
+    const std::span shaded = std::span(stage.room).first(count);
+    for (std::size_t l = setting_.lights.size(); l-- > 0;) light(shaded, static_cast<std::uint32_t>(l));
+
+    stage.transmitted.clear();
+    stage.reflected.clear();
+    for (std::size_t i = 0; i < count; ++i) {
+      OnwardRays onward = spawnOnward(*shaded[i].ray, shaded[i].point, setting_);
+      stage.transmitted.add(std::move(onward.transmitted), i, onward.transmitWeight);
+      stage.reflected.add(std::move(onward.reflected), i, onward.reflectWeight);
+    }
+    counts_.transmittedRays += stage.transmitted.rays.size();
+    counts_.reflectedRays += stage.reflected.rays.size();
+    goOn(shaded, stage.transmitted, depth);
+    goOn(shaded, stage.reflected, depth);
+    for (const Shaded& at : shaded)
+      *at.seen = broughtBack(at.sum, at.ray->origin, at.ray->direction, at.t, at.ray->extinct,
+                             at.ray->media.empty(), setting_);
+  }
 
   void follow(std::span<const Ray> rays, std::span<Hit> hits) {
     if (!scene_.undivided()) {
@@ -97,7 +129,7 @@ class Tracer {
       return;
     }
     Segment segments[kBundleSize];
-    for (std::size_t i = 0; i < rays.size(); ++i) segments[i] = {&rays[i]};
+    for (std::size_t i = 0; i < rays.size(); ++i) segments[i] = Segment(rays[i]);
     counts_.visits += rays.size();
     visitTogether(scene_.model, scene_.space(), std::span(segments).first(rays.size()), hits);
     for (const Hit& hit : hits.first(rays.size())) {
@@ -106,85 +138,133 @@ class Tracer {
     }
   }
 
-  // Asks one point of a light for all hits.
-  void light(std::vector<Shaded>& shaded, std::size_t point) {
-    std::vector<ShadowRay> shadows;
-    shadows.reserve(shaded.size());
-    Color* through[kBundleSize];
-    for (Shaded& at : shaded) {
-      if (at.spawned.lit[point] != Lit::asked) continue;
-      through[shadows.size()] = &at.gathered.light[point];
-      shadows.push_back(shadowRay(at.ray, at.point, at.spawned.samples[point]));
-    }
-    counts_.shadowRays += shadows.size();
-    if (scene_.undivided()) {
-      passTogether(shadows);
-    } else {
-      for (ShadowRay& shadow : shadows)
-        if (followShadow(scene_.tree, scene_.model, scene_, shadow, 0, scene_.setting, counts_).state ==
-            Progress::State::hit)
-          shadow.through = kBlack;
-    }
-    for (std::size_t i = 0; i < shadows.size(); ++i) *through[i] = shadows[i].through;
+  void shade(const Ray& ray, const Hit& hit, Color& seen, Shaded& at) {
+    at.ray = &ray;
+    at.seen = &seen;
+    at.t = hit.t;
+    at.point = evaluateSurface(scene_.model, hit, ray, setting_);
+    at.facing = {at.point.normal, at.point.geometricNormal, at.point.smooth,
+                 mirrored(ray.direction, at.point.normal)};
+    at.sum = at.point.surface.ambient * setting_.ambient;
   }
 
-  // Takes shadow rays to their lights; `through` becomes black for those that end in darkness.
-  void passTogether(std::span<ShadowRay> shadows) {
-    if (shadows.empty()) return;
-    counts_.visits += shadows.size();
+  // Adds a light to all hits.
+  void light(std::span<Shaded> shaded, std::uint32_t number) {
+    const LightSource& light = setting_.lights[number];
+    std::visit(
+        [&](const auto& kind) {
+          for (int point = 0; point < kind.points(); ++point) {
+            std::array<LightSample, kBundleSize> samples;
+            std::array<Lit, kBundleSize> states;
+            for (std::size_t i = 0; i < shaded.size(); ++i) {
+              const Ray& ray = *shaded[i].ray;
+              samples[i] = kind.sample(
+                  lightQuery(shaded[i].point.position, ray.key, ray.sample, number, setting_), point);
+              states[i] = lit(light, samples[i], shaded[i].point, setting_);
+            }
+            addLightPoint(shaded, light.color, samples, states);
+          }
+        },
+        light.kind);
+  }
+
+  void addLightPoint(std::span<Shaded> shaded, Color color, std::span<const LightSample> samples,
+                     std::span<const Lit> states) {
     Segment segments[kBundleSize];
-    for (std::size_t i = 0; i < shadows.size(); ++i) segments[i] = {&shadows[i].ray, 0, shadows[i].distance};
-    Obstruction met[kBundleSize];
-    obstructionTogether(scene_.model, scene_.space(), std::span(segments).first(shadows.size()), met);
-    ShadowRay* filtered[kBundleSize];  // those that have a transparent surface before them
+    std::size_t from[kBundleSize];  // which hit asks
     std::size_t count = 0;
-    for (std::size_t i = 0; i < shadows.size(); ++i) {
-      counts_.tests += met[i].tests;
-      if (met[i].opaque || (met[i].transparent && !scene_.setting.transparentShadows)) {
-        shadows[i].through = kBlack;
-      } else if (met[i].transparent) {
-        filtered[count++] = &shadows[i];
+    for (std::size_t i = 0; i < shaded.size(); ++i) {
+      if (states[i] != Lit::asked) continue;
+      segments[count] = {originOff(shaded[i].point, samples[i].shadowToward), samples[i].shadowToward,
+                         samples[i].shadowDistance, shaded[i].ray->moment};
+      from[count++] = i;
+    }
+    Color through[kBundleSize];
+    std::fill_n(through, shaded.size(), kWhite);
+    counts_.shadowRays += count;
+    if (scene_.undivided()) {
+      pass(shaded, samples, std::span(segments).first(count), from, through);
+    } else {
+      for (std::size_t k = 0; k < count; ++k) {
+        const std::size_t i = from[k];
+        ShadowRay shadow = shadowRay(*shaded[i].ray, shaded[i].point, samples[i]);
+        const bool dark = followShadow(scene_.tree, scene_.model, scene_, shadow, 0, setting_, counts_).state ==
+                          Progress::State::hit;
+        through[i] = dark ? kBlack : shadow.through;
       }
     }
+    for (std::size_t i = 0; i < shaded.size(); ++i) {
+      if (states[i] == Lit::no || through[i] == kBlack) continue;
+      Shaded& at = shaded[i];
+      at.sum = addLight(at.sum, at.point.surface, at.facing, samples[i].toward,
+                        samples[i].factor * (color * through[i]));
+    }
+  }
+
+  // Takes shadow rays to their lights; `through` of the hit that asks becomes what arrives.
+  void pass(std::span<const Shaded> shaded, std::span<const LightSample> samples, std::span<Segment> segments,
+            std::span<const std::size_t> from, std::span<Color> through) {
+    if (segments.empty()) return;
+    counts_.visits += segments.size();
+    Obstruction met[kBundleSize];
+    obstructionTogether(scene_.model, scene_.space(), segments, met);
+    std::vector<ShadowRay> filtered;  // those that have a transparent surface before them
+    std::size_t asking[kBundleSize];
+    for (std::size_t k = 0; k < segments.size(); ++k) {
+      const std::size_t i = from[k];
+      counts_.tests += met[k].tests;
+      if (met[k].opaque || (met[k].transparent && !setting_.transparentShadows)) {
+        through[i] = kBlack;
+      } else if (met[k].transparent) {
+        asking[filtered.size()] = i;
+        filtered.push_back(shadowRay(*shaded[i].ray, shaded[i].point, samples[i]));
+      }
+    }
+    if (filtered.empty()) return;
+    filter(filtered);
+    for (std::size_t k = 0; k < filtered.size(); ++k) through[asking[k]] = filtered[k].through;
+  }
+
+  // Takes shadow rays through the transparent surfaces before them; `through` becomes black in darkness.
+  void filter(std::span<ShadowRay> shadows) {
+    ShadowRay* left[kBundleSize];
+    std::size_t count = 0;
+    for (ShadowRay& shadow : shadows) left[count++] = &shadow;
     while (count > 0) {
-      for (std::size_t i = 0; i < count; ++i)
-        segments[i] = {&filtered[i]->ray, filtered[i]->last, filtered[i]->distance};
+      Segment segments[kBundleSize];
       Hit hits[kBundleSize];
+      for (std::size_t i = 0; i < count; ++i)
+        segments[i] = Segment(left[i]->ray, left[i]->last, left[i]->distance);
       visitTogether(scene_.model, scene_.space(), std::span(segments).first(count), hits);
-      std::size_t left = 0;
+      std::size_t kept = 0;
       for (std::size_t i = 0; i < count; ++i) {
         counts_.tests += hits[i].tests;
         if (!hits[i].found()) continue;
-        if (passSurface(scene_.model, hits[i], *filtered[i], scene_.setting)) {
-          filtered[left++] = filtered[i];
+        if (passSurface(scene_.model, hits[i], *left[i], setting_)) {
+          left[kept++] = left[i];
         } else {
-          filtered[i]->through = kBlack;
+          left[i]->through = kBlack;
         }
       }
-      count = left;
+      count = kept;
     }
   }
 
-  // Traces the rays of one kind that go on from the hits.
-  void goOn(std::vector<Shaded>& shaded, std::optional<Ray> Secondary::*which, Color Gathered::*color,
-            std::uint64_t& counter) {
-    std::vector<Ray> rays;
-    Color* asking[kBundleSize];
-    for (Shaded& at : shaded) {
-      if (!(at.spawned.*which)) continue;
-      asking[rays.size()] = &(at.gathered.*color);
-      rays.push_back(std::move(*(at.spawned.*which)));
-    }
-    if (rays.empty()) return;
-    counter += rays.size();
+  // Traces rays that go on from hits, and adds what they see.
+  void goOn(std::span<Shaded> shaded, const OnwardBundle& onward, std::size_t depth) {
+    if (onward.rays.empty()) return;
     Color seen[kBundleSize];
-    trace(rays, seen);
-    for (std::size_t i = 0; i < rays.size(); ++i) *asking[i] = seen[i];
+    trace(onward.rays, seen, depth + 1);
+    for (std::size_t i = 0; i < onward.goals.size(); ++i) {
+      Color& sum = shaded[onward.goals[i].from].sum;
+      sum = sum + onward.goals[i].weight * seen[i];
+    }
   }
 
   const Scene& scene_;
+  const Setting& setting_;
   TraceCounts& counts_;
-  std::size_t lightPoints_;
+  std::vector<std::unique_ptr<Stage>> stages_;  // by depth
 };
 
 }  // namespace

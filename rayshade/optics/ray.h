@@ -5,10 +5,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <vector>
-
 #include "rayshade/base/color.h"
 #include "rayshade/base/expression.h"
+#include "rayshade/base/inline_vector.h"
 #include "rayshade/base/random.h"
 #include "rayshade/base/vec.h"
 
@@ -19,7 +18,7 @@ struct Medium {
   double index = 1;    // of refraction
   double extinct = 1;  // share of the light that is left after one unit of distance
 };
-using MediumStack = std::vector<Medium>;  // innermost last; empty: the atmosphere
+using MediumStack = InlineVector<Medium, 2>;  // innermost last; empty: the atmosphere
 
 struct Ray {
   Vec3 origin, direction;       // |direction| = 1                                              [world units]

@@ -6,12 +6,20 @@
 namespace rayshade {
 namespace {
 
-// Adds one point of a light (the shading model of the language reference, Phong 1975 without normalisation).
-// `reflected`: the ray's mirror direction.
-Color addLight(Color sum, const Intersection& hit, Vec3 reflected, Vec3 toward, Color light) {
-  const Surface& surface = hit.surface;
-  const double along = dot(reflected, toward);
-  const double cosine = lightCosine(toward, hit.normal, hit.geometricNormal, hit.smooth);
+Color throughAir(Color seen, Vec3 origin, Vec3 direction, double distance, const Setting& setting) {
+  const AirPath path{origin, origin + distance * direction, distance};
+  // The last effect of the file is applied first (rayshade's order).
+  for (std::size_t i = setting.atmosphere.size(); i-- > 0;)
+    seen = std::visit([&](const auto& effect) { return effect.apply(seen, path); }, setting.atmosphere[i]);
+  return seen;
+}
+
+}  // namespace
+
+// The shading model of the language reference: Phong 1975 without normalisation.
+Color addLight(Color sum, const Surface& surface, const Facing& facing, Vec3 toward, Color light) {
+  const double along = dot(facing.reflected, toward);
+  const double cosine = lightCosine(toward, facing.normal, facing.geometricNormal, facing.smooth);
   if (cosine > 0) {
     sum = sum + cosine * (surface.diffuse * light);
     if (surface.specular == kBlack) return sum;  // spares a pow
@@ -25,15 +33,12 @@ Color addLight(Color sum, const Intersection& hit, Vec3 reflected, Vec3 toward, 
   return surface.translucency * sum;
 }
 
-Color throughAir(Color seen, Vec3 origin, Vec3 direction, double distance, const Setting& setting) {
-  const AirPath path{origin, origin + distance * direction, distance};
-  // The last effect of the file is applied first (rayshade's order).
-  for (std::size_t i = setting.atmosphere.size(); i-- > 0;)
-    seen = std::visit([&](const auto& effect) { return effect.apply(seen, path); }, setting.atmosphere[i]);
-  return seen;
+Color broughtBack(Color sum, Vec3 origin, Vec3 direction, double distance, double extinct, bool inAir,
+                  const Setting& setting) {
+  if (extinct != 1) sum = std::pow(extinct, distance) * sum;
+  if (inAir && !setting.atmosphere.empty()) sum = throughAir(sum, origin, direction, distance, setting);
+  return sum;
 }
-
-}  // namespace
 
 Intersection describe(const Ray& ray, double t, const SurfacePoint& at, const Secondary& spawned,
                       const Setting& setting) {
@@ -70,7 +75,7 @@ Intersection describe(const Ray& ray, double t, const SurfacePoint& at, const Se
 
 Color combine(const Intersection& hit, const Gathered& gathered, const Setting& setting,
               const LightSamples& samples) {
-  const Vec3 reflected = mirrored(hit.direction, hit.normal);
+  const Facing facing{hit.normal, hit.geometricNormal, hit.smooth, mirrored(hit.direction, hit.normal)};
   Color sum = hit.surface.ambient * setting.ambient;
   std::size_t end = hit.lit.size();  // of the points of the light that is being added
   for (std::size_t l = setting.lights.size(); l-- > 0;) {
@@ -85,24 +90,18 @@ Color combine(const Intersection& hit, const Gathered& gathered, const Setting& 
       if (through == kBlack) continue;
       const LightSample sample =
           samples.empty() ? sampleLight(light, query, static_cast<int>(p - begin)) : samples[p];
-      sum = addLight(sum, hit, reflected, sample.toward, sample.factor * (light.color * through));
+      sum = addLight(sum, hit.surface, facing, sample.toward, sample.factor * (light.color * through));
     }
     end = begin;
   }
   if (hit.transmitted) sum = sum + hit.transmitWeight * gathered.transmitted;
   if (hit.reflected) sum = sum + hit.reflectWeight * gathered.reflected;
-  if (hit.extinct != 1) sum = std::pow(hit.extinct, hit.distance) * sum;
-  if (hit.inAir && !setting.atmosphere.empty())
-    sum = throughAir(sum, hit.origin, hit.direction, hit.distance, setting);
-  return sum;
+  return broughtBack(sum, hit.origin, hit.direction, hit.distance, hit.extinct, hit.inAir, setting);
 }
 
 Color missed(const Ray& ray, const Setting& setting) {
-  Color seen = setting.background;
-  if (ray.extinct != 1) seen = std::pow(ray.extinct, kFarAway) * seen;
-  if (ray.media.empty() && !setting.atmosphere.empty())
-    seen = throughAir(seen, ray.origin, ray.direction, kFarAway, setting);
-  return seen;
+  return broughtBack(setting.background, ray.origin, ray.direction, kFarAway, ray.extinct, ray.media.empty(),
+                     setting);
 }
 
 }  // namespace rayshade

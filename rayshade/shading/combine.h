@@ -37,6 +37,21 @@ struct Gathered {
 Intersection describe(const Ray& ray, double t, const SurfacePoint& at, const Secondary& spawned,
                       const Setting& setting);
 
+// How a hit is turned towards lights and viewer.
+struct Facing {
+  Vec3 normal, geometricNormal;
+  bool smooth = false;
+  Vec3 reflected;  // the ray's mirror direction
+};
+
+// The steps of combine(), for those who have the colours at hand one after the other.
+//
+// Adds one point of a light: `toward` it, `light` what arrives from it.
+Color addLight(Color sum, const Surface& surface, const Facing& facing, Vec3 toward, Color light);
+// What is left of a colour at the origin of the ray that brings it.
+Color broughtBack(Color sum, Vec3 origin, Vec3 direction, double distance, double extinct, bool inAir,
+                  const Setting& setting);
+
 // `samples`: Secondary::samples, if they are still at hand; else the lights are looked at again, with the same answers.
 Color combine(const Intersection& hit, const Gathered& gathered, const Setting& setting,
               const LightSamples& samples = {});

@@ -51,6 +51,18 @@ class Climb {
   TexturePlace place_;
 };
 
+// Turns the normals towards the viewer.  On interpolated normals that disagree with the surface itself about the side, the
+// surface decides.  True: the ray comes from the side to which they point, and goes into the solid.
+bool turnToViewer(ShapePoint& point, Vec3 direction) {
+  double k = dot(direction, point.normal);
+  const double g = dot(direction, point.geometricNormal);
+  if ((k <= 0 && g > 0) || (k >= 0 && g < 0)) k = g;
+  if (!(k > 0)) return k <= 0;
+  point.normal = -point.normal;
+  point.geometricNormal = -point.geometricNormal;
+  return false;
+}
+
 }  // namespace
 
 const Surface& boundSurface(const Model& model, const HitPath& path) {
@@ -63,7 +75,25 @@ const Surface& boundSurface(const Model& model, const HitPath& path) {
 }
 
 SurfacePoint evaluateSurface(const Model& model, const Hit& hit, const Ray& ray, const Setting& setting) {
-  return evaluateSurface(model, hit, pathTo(model, ray, hit), ray, setting);
+  const SceneStore& store = model.store();
+  const PlacedObject& object = store.object(hit.object);
+  const PlacedFrame& frame = store.frame(object.frame);
+  const bool shape = object.kind != kInstanceKind && object.kind != kCsgKind;
+  if (!shape || !frame.identity || frame.textured)
+    return evaluateSurface(model, hit, pathTo(model, ray, hit), ray, setting);
+  // The ordinary case, a shape of the world as it is: the same answers as below without a path.
+  const LocalRay local{ray.origin, ray.direction, 1};
+  ShapePoint point =
+      withShape(store, object, [&](const auto& body) { return body.pointAt(local, hit.t); });
+  SurfacePoint at;
+  at.smooth = point.normal != point.geometricNormal;
+  at.entering = turnToViewer(point, ray.direction);
+  at.position = point.position;
+  at.normal = point.normal;
+  at.geometricNormal = point.geometricNormal;
+  at.error = point.error + kRounding * maxAbs(at.position);
+  at.surface = store.surfaceOrDefault(object.surface);
+  return at;
 }
 
 SurfacePoint evaluateSurface(const Model& model, const Hit& hit, const HitPath& path, const Ray& ray,
@@ -74,18 +104,10 @@ SurfacePoint evaluateSurface(const Model& model, const Hit& hit, const HitPath& 
     return shape.pointAt(last.ray, rootAt(model, last, hit.t));
   });
 
-  // Which way does it face?  On interpolated normals that disagree with the surface itself, the surface decides.
-  Vec3 direction = last.ray.direction;
-  double k = dot(direction, shapePoint.normal);
-  const double g = dot(direction, shapePoint.geometricNormal);
-  if ((k <= 0 && g > 0) || (k >= 0 && g < 0)) k = g;
   SurfacePoint at;
   at.smooth = shapePoint.normal != shapePoint.geometricNormal;
-  at.entering = path.entering ? *path.entering : k <= 0;
-  if (k > 0) {
-    shapePoint.normal = -shapePoint.normal;
-    shapePoint.geometricNormal = -shapePoint.geometricNormal;
-  }
+  const bool entering = turnToViewer(shapePoint, last.ray.direction);
+  at.entering = path.entering.value_or(entering);
 
   // Up to the world.
   bool textured = false, placed = false;  // placed: in a space other than the world

@@ -66,22 +66,30 @@ LightQuery lightQuery(Vec3 position, RandomKey key, int sample, std::uint32_t li
   return {position, child(key, Branch::light, light), sample, setting.samplesPerSide};
 }
 
+Lit lit(const LightSource& light, const LightSample& sample, const SurfacePoint& at, const Setting& setting) {
+  const double cosine = lightCosine(sample.toward, at.normal, at.geometricNormal, at.smooth);
+  if (!(sample.factor > 0) || !answers(at.surface, cosine)) return Lit::no;
+  return setting.shadows && light.castsShadows && !at.surface.noShadow ? Lit::asked : Lit::fully;
+}
+
 Secondary spawnSecondary(const Ray& ray, const SurfacePoint& at, const Setting& setting) {
-  const Surface& surface = at.surface;
-  Secondary spawned;
+  Secondary spawned{spawnOnward(ray, at, setting), {}, {}};
   for (std::uint32_t l = 0; l < setting.lights.size(); ++l) {
     const LightSource& light = setting.lights[l];
     const LightQuery query = lightQuery(at.position, ray.key, ray.sample, l, setting);
-    const bool shadows = setting.shadows && light.castsShadows && !surface.noShadow;
     const int points = pointsOf(light);
     for (int i = 0; i < points; ++i) {
       const LightSample sample = sampleLight(light, query, i);
-      const double cosine = lightCosine(sample.toward, at.normal, at.geometricNormal, at.smooth);
-      const bool matters = sample.factor > 0 && answers(surface, cosine);
       spawned.samples.push_back(sample);
-      spawned.lit.push_back(!matters ? Lit::no : shadows ? Lit::asked : Lit::fully);
+      spawned.lit.push_back(lit(light, sample, at, setting));
     }
   }
+  return spawned;
+}
+
+OnwardRays spawnOnward(const Ray& ray, const SurfacePoint& at, const Setting& setting) {
+  const Surface& surface = at.surface;
+  OnwardRays spawned;
   if (ray.depth >= setting.limits.maxDepth) return spawned;
 
   Color reflectWeight = surface.reflect * surface.specular;

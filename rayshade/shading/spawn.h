@@ -39,15 +39,25 @@ struct ShadowRay {
   std::uint32_t occluderGround = 0;  // where several models are at hand: which one it belongs to; not sent
 };
 
-struct Secondary {
-  LightStates lit;
-  LightSamples samples;  // what each point of a light looks like from here
+// The rays that go on from a hit, and what the colours that they bring will weigh.
+struct OnwardRays {
   std::optional<Ray> transmitted, reflected;
   Color transmitWeight, reflectWeight;
 };
 
+struct Secondary : OnwardRays {
+  LightStates lit;
+  LightSamples samples;  // what each point of a light looks like from here
+};
+
 std::size_t lightPointCount(const Setting& setting);
 
+// What a point of a light, seen as `sample` from the hit, means to it.
+Lit lit(const LightSource& light, const LightSample& sample, const SurfacePoint& at, const Setting& setting);
+
+OnwardRays spawnOnward(const Ray& ray, const SurfacePoint& at, const Setting& setting);
+
+// Both, for all points of all lights.
 Secondary spawnSecondary(const Ray& ray, const SurfacePoint& at, const Setting& setting);
 
 // The shadow ray to light point `point` (a position in Secondary::lit whose state is `asked`).

@@ -6,71 +6,66 @@
 namespace rayshade {
 namespace {
 
-// The rays of a bundle, ready to be tested.
+// The rays of a bundle, tested against one object after the other.
 class Testers {
  public:
-  Testers(const Model& model, std::span<const Segment> segments)
-      : store_(model.store()), count_(segments.size()) {
-    probes_.reserve(count_);
-    for (std::size_t i = 0; i < count_; ++i) {
-      const Ray& ray = *segments[i].ray;
-      queries_[i] = {{ray.origin, ray.direction, 1}, segments[i].tMin, segments[i].tEnd};
-      probes_.push_back(Probe(model, queries_[i].ray, ray.moment));
-    }
-  }
-
-  std::span<RayQuery> bundle() { return std::span(queries_).first(count_); }
-  RayQuery& query(std::size_t i) { return queries_[i]; }
+  Testers(const Model& model, std::span<Segment> segments) : model_(model), segments_(segments) {}
 
   // Calls use(i, t) with the first t > tMin at which each ray meets the object.
   template <class Use>
   void test(const Target& target, RaySet rays, Use&& use) {
-    if (target.frame == 0 && target.kind == kKindOf<Sphere>) {
-      testShape(store_.shapes<Sphere>()[target.body], rays, use);
-    } else if (target.frame == 0 && target.kind == kKindOf<Triangle>) {
-      testShape(store_.shapes<Triangle>()[target.body], rays, use);
-    } else if (target.frame == 0 && target.kind == kKindOf<PhongTriangle>) {
-      testShape(store_.shapes<PhongTriangle>()[target.body], rays, use);
-    } else {
-      forEachRay(rays, [&](std::size_t i) {
-        use(i, probes_[i].intersect(target, queries_[i].tMin, queries_[i].tMax));
-      });
-    }
+    if (target.frame != 0 || target.kind == kInstanceKind || target.kind == kCsgKind)
+      return probe(target, rays, use);
+    // A shape in the space of the rays: no frame, no change of scale.
+    [&]<class... S>(TypeList<S...>) {
+      (void)((target.kind == kKindOf<S> ? (testShape<S>(target.body, rays, use), true) : false) || ...);
+    }(AllShapes{});
   }
 
  private:
-  // A shape in the space of the rays: no frame, no change of scale.
   template <class S, class Use>
-  void testShape(const S& shape, RaySet rays, Use&& use) {
-    forEachRay(rays, [&](std::size_t i) { use(i, shape.intersect(queries_[i].ray, queries_[i].tMin)); });
+  void testShape(std::uint32_t body, RaySet rays, Use&& use) {
+    const S& shape = model_.store().shapes<S>()[body];
+    forEachRay(rays, [&](std::size_t i) { use(i, shape.intersect(segments_[i].ray, segments_[i].tMin)); });
   }
 
-  const SceneStore& store_;
-  std::size_t count_;
-  RayQuery queries_[kBundleSize];
-  std::vector<Probe> probes_;
+  template <class Use>
+  void probe(const Target& target, RaySet rays, Use&& use) {
+    if (probes_.empty()) {
+      probes_.reserve(segments_.size());
+      for (const Segment& segment : segments_) probes_.push_back(Probe(model_, segment.ray, segment.moment));
+    }
+    forEachRay(rays, [&](std::size_t i) {
+      use(i, probes_[i].intersect(target, segments_[i].tMin, segments_[i].tMax));
+    });
+  }
+
+  const Model& model_;
+  std::span<Segment> segments_;
+  std::vector<Probe> probes_;  // made when the first object comes that needs them
 };
 
 }  // namespace
 
-void visitTogether(const Model& model, const Region& region, std::span<const Segment> segments,
+void visitTogether(const Model& model, const Region& region, std::span<Segment> segments,
                    std::span<Hit> hits) {
   Testers testers(model, segments);
   std::fill_n(hits.begin(), segments.size(), Hit{});
-  region.bvh.nearest(testers.bundle(), [&](std::uint32_t first, std::uint32_t count, RaySet asking) {
+  region.bvh.nearest(segments, [&](std::uint32_t first, std::uint32_t count, RaySet asking) {
     RaySet nearer = 0;
     for (const Target& target : std::span(region.objects).subspan(first, count)) {
       testers.test(target, asking, [&](std::size_t i, double t) {
         Hit& best = hits[i];
         ++best.tests;
-        // What is nearest so far stands in tMax, too.
-        if (!(t < segments[i].tEnd) || t > best.t) return;
-        if (t == best.t &&
-            precedence(model.store().object(target.object)) >= precedence(model.store().object(best.object)))
+        if (!(t <= segments[i].tMax) || t == kNoHit) return;
+        // At the end of a segment nothing counts but what was found there already.
+        if (t == segments[i].tMax &&
+            (!best.found() || precedence(model.store().object(target.object)) >=
+                                  precedence(model.store().object(best.object))))
           return;
         best.t = t;
         best.object = target.object;
-        testers.query(i).tMax = t;
+        segments[i].tMax = t;
         nearer |= RaySet{1} << i;
       });
     }
@@ -78,24 +73,24 @@ void visitTogether(const Model& model, const Region& region, std::span<const Seg
   });
 }
 
-void obstructionTogether(const Model& model, const Region& region, std::span<const Segment> segments,
+void obstructionTogether(const Model& model, const Region& region, std::span<Segment> segments,
                          std::span<Obstruction> met) {
   Testers testers(model, segments);
   std::fill_n(met.begin(), segments.size(), Obstruction{});
-  region.bvh.any(testers.bundle(), [&](std::uint32_t first, std::uint32_t count, RaySet asking) {
-    RaySet stopped = 0, filtered = 0;
-    forEachRay(asking, [&](std::size_t i) { filtered |= RaySet{met[i].transparent} << i; });
+  RaySet filtered = 0;  // has met something transparent
+  region.bvh.any(segments, [&](std::uint32_t first, std::uint32_t count, RaySet asking) {
+    RaySet stopped = 0;
     for (const Target& target : std::span(region.objects).subspan(first, count)) {
       // Another transparent thing tells nothing new.
       testers.test(target, asking & ~stopped & ~(target.opaque ? 0 : filtered), [&](std::size_t i, double t) {
         ++met[i].tests;
-        if (!(t < segments[i].tEnd)) return;
-        (target.opaque ? met[i].opaque : met[i].transparent) = true;
-        (target.opaque ? stopped : filtered) |= RaySet{1} << i;
+        if (t < segments[i].tMax) (target.opaque ? stopped : filtered) |= RaySet{1} << i;
       });
     }
+    forEachRay(stopped, [&](std::size_t i) { met[i].opaque = true; });
     return stopped;
   });
+  forEachRay(filtered, [&](std::size_t i) { met[i].transparent = true; });
 }
 
 }  // namespace rayshade

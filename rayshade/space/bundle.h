@@ -13,18 +13,23 @@
 
 namespace rayshade {
 
-// The part tMin < t < tEnd of a ray.
-struct Segment {
-  const Ray* ray = nullptr;
-  double tMin = 0, tEnd = kInfinity;
+// The part tMin < t < tMax of a ray.
+struct Segment : RayQuery {
+  Segment() = default;
+  Segment(const Ray& ray, double tMin = 0, double tMax = kInfinity)
+      : RayQuery{{ray.origin, ray.direction, 1}, tMin, tMax}, moment(ray.moment) {}
+  Segment(Vec3 origin, Vec3 direction, double tMax, Moment moment)
+      : RayQuery{{origin, direction, 1}, 0, tMax}, moment(moment) {}
+
+  Moment moment;
 };
 
-// visit() for each of at most kBundleSize segments.
-void visitTogether(const Model& model, const Region& region, std::span<const Segment> segments,
+// visit() for each of at most kBundleSize segments, whose tMax become the t of the hits.
+void visitTogether(const Model& model, const Region& region, std::span<Segment> segments,
                    std::span<Hit> hits);
 
 // obstruction() for each of at most kBundleSize segments.
-void obstructionTogether(const Model& model, const Region& region, std::span<const Segment> segments,
+void obstructionTogether(const Model& model, const Region& region, std::span<Segment> segments,
                          std::span<Obstruction> met);
 
 }  // namespace rayshade

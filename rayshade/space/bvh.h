@@ -78,15 +78,15 @@ class Bvh {
     return traverse<false>(origin, direction, tMin, tMax, leaf);
   }
 
-  // The same for up to kBundleSize rays at once: a node is fetched once for all rays that come to it.  Calls
+  // The same for up to kBundleSize rays (Query: a RayQuery) at once: a node is fetched once for all rays that come to it.  Calls
   // leaf(first, count, rays), which answers with the rays whose tMax it has lowered.
-  template <class Leaf>
-  void nearest(std::span<RayQuery> bundle, Leaf&& leaf) const {
+  template <class Query, class Leaf>
+  void nearest(std::span<Query> bundle, Leaf&& leaf) const {
     traverseTogether<true>(bundle, leaf);
   }
   // Here leaf(first, count, rays) answers with the rays that have found what they look for.
-  template <class Leaf>
-  void any(std::span<RayQuery> bundle, Leaf&& leaf) const {
+  template <class Query, class Leaf>
+  void any(std::span<Query> bundle, Leaf&& leaf) const {
     traverseTogether<false>(bundle, leaf);
   }
 
@@ -161,8 +161,8 @@ class Bvh {
                 Leaf&& leaf) const;
   template <bool kSorted, class Leaf>
   bool traverseFrom(std::uint32_t top, BoxRay& ray, const double& tMax, Leaf&& leaf) const;
-  template <bool kSorted, class Leaf>
-  void traverseTogether(std::span<RayQuery> bundle, Leaf&& leaf) const;
+  template <bool kSorted, class Query, class Leaf>
+  void traverseTogether(std::span<Query> bundle, Leaf&& leaf) const;
 
   std::vector<Node> nodes_;
   std::vector<std::uint32_t> order_;  // items of leaves, unbounded items, empty items
@@ -241,8 +241,8 @@ bool Bvh::traverseFrom(std::uint32_t top, BoxRay& ray, const double& tMax, Leaf&
   }
 }
 
-template <bool kSorted, class Leaf>
-void Bvh::traverseTogether(std::span<RayQuery> bundle, Leaf&& leaf) const {
+template <bool kSorted, class Query, class Leaf>
+void Bvh::traverseTogether(std::span<Query> bundle, Leaf&& leaf) const {
   RaySet waiting = static_cast<RaySet>((std::uint64_t{1} << bundle.size()) - 1);
   const auto visitLeaf = [&](std::uint32_t first, std::uint32_t count, RaySet rays) {
     const RaySet answer = leaf(first, count, rays);

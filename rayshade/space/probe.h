@@ -13,11 +13,11 @@ template <class F>
 auto withShape(const SceneStore& store, const PlacedObject& object, F&& f) {
   return [&]<class... S>(TypeList<S...>) {
     using Result = std::common_type_t<decltype(f(std::declval<const S&>()))...>;
-    Result result{};
-    const std::size_t kind = static_cast<std::size_t>(object.kind);
-    std::size_t i = 0;
-    (void)((kind == i++ ? (result = f(store.shapes<S>()[object.body]), true) : false) || ...);
-    return result;
+    using Call = Result (*)(const SceneStore&, std::uint32_t, F&);
+    static constexpr Call calls[] = {[](const SceneStore& from, std::uint32_t body, F& use) -> Result {
+      return use(from.shapes<S>()[body]);
+    }...};
+    return calls[static_cast<std::size_t>(object.kind)](store, object.body, f);
   }(AllShapes{});
 }
 
