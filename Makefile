@@ -26,7 +26,8 @@ OPTIMIZE ?= -O2
 # g++ 12 sees uninitialised memory in std::regex and std::variant when it instruments them; clang knows no such warning.
 san_quiet := -Wno-unknown-warning-option -Wno-maybe-uninitialized
 # -ffp-contract=off: a fused multiply-add would give other bits on machines that have one.
-FLAGS := -std=c++20 $(OPTIMIZE) -g1 -Wall -Wextra -Werror -ffp-contract=off -I. \
+# -Wno-psabi: wide vectors (rayshade/base/lanes.h) never leave the function that makes them.
+FLAGS := -std=c++20 $(OPTIMIZE) -g1 -Wall -Wextra -Werror -Wno-psabi -ffp-contract=off -I. \
          $(if $(SAN),-fsanitize=$(SAN) -fno-sanitize-recover=all -fno-omit-frame-pointer $(san_quiet))
 LIBRARIES := -lpng
 # One tree serves tests and fuzzers; it is the one that clang compiles, too.  What is left out crashes anyway (null),
@@ -60,6 +61,12 @@ test_programs := $(BIN)/rayshade-tests $(BIN)/link-tests $(BIN)/pvm-tests
 
 .PHONY: all demo check check-sanitized test guarded install fuzz fuzzers bench benches experiments format clean packages
 all: $(programs)
+
+# What runs for long is worth a tenth more.  -Wno-restrict: g++ 12 then sees overlaps in std::string that are not there (its
+# bug 105651).
+ifndef SAN
+$(core) $(tasks): FLAGS += -O3 -Wno-restrict
+endif
 
 $(BUILD)/%.o: %.cc
 	@mkdir -p $(@D)

@@ -191,6 +191,7 @@ void Sampler::addRows() {
         demandAll(pixel, row);
       } else if (!side) {
         ++counts_.needed;
+        if (cells == 1) continue;
         const RandomKey key = sampleKey(seed_, frame_, static_cast<std::uint32_t>(area_.x + x),
                                         static_cast<std::uint32_t>(area_.y + y), kNoCell);
         pixel.firstCell = static_cast<std::uint8_t>(uniform(key, Dimension::firstCell) * cells);

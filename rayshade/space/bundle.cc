@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rayshade/space/bundle.h"
 
+#include "rayshade/space/bvh_bundle.h"
 #include "rayshade/space/probe.h"
 
 namespace rayshade {
@@ -47,6 +48,7 @@ class Testers {
 
 }  // namespace
 
+RAYSHADE_FOR_THIS_PROCESSOR
 void visitTogether(const Model& model, const Region& region, std::span<Segment> segments,
                    std::span<Hit> hits) {
   Testers testers(model, segments);
@@ -73,6 +75,7 @@ void visitTogether(const Model& model, const Region& region, std::span<Segment> 
   });
 }
 
+RAYSHADE_FOR_THIS_PROCESSOR
 void obstructionTogether(const Model& model, const Region& region, std::span<Segment> segments,
                          std::span<Obstruction> met) {
   Testers testers(model, segments);

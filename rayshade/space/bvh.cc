@@ -9,12 +9,6 @@ namespace rayshade {
 
 namespace {
 
-// Where the tree's arithmetic cannot overflow: larger items count as unbounded, longer or shorter directions
-// and farther origins see every item.
-constexpr double kLargest = 0x1p+500;
-constexpr double kSmallest = 0x1p-500;
-constexpr double kFarthest = 0x1p+100;  // in the tree's coordinates: 2^100 times the size of the scene
-
 // 2^exponent, for exponents of normal numbers.
 double powerOfTwo(int exponent) { return std::bit_cast<double>(std::uint64_t(1023 + exponent) << 52); }
 

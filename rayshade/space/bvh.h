@@ -22,18 +22,10 @@
 #include <vector>
 
 #include "rayshade/base/bounds.h"
+#include "rayshade/base/lanes.h"
 #include "rayshade/optics/ray.h"
 
 namespace rayshade {
-
-// Vector extensions of GCC and clang: element by element, the same bits on every machine.
-typedef float Float4 __attribute__((vector_size(16)));
-typedef std::int32_t Int4 __attribute__((vector_size(16)));
-typedef std::int64_t Long2 __attribute__((vector_size(16)));
-
-inline Float4 minimum(Float4 a, Float4 b) { return a < b ? a : b; }
-inline Float4 maximum(Float4 a, Float4 b) { return a > b ? a : b; }
-inline Float4 all(float x) { return Float4{x, x, x, x}; }
 
 // A ray and the part of it that is of interest.
 struct RayQuery {
@@ -78,19 +70,25 @@ class Bvh {
     return traverse<false>(origin, direction, tMin, tMax, leaf);
   }
 
-  // The same for up to kBundleSize rays (Query: a RayQuery) at once: a node is fetched once for all rays that come to it.  Calls
-  // leaf(first, count, rays), which answers with the rays whose tMax it has lowered.
+  // The same for up to kBundleSize rays (Query: a RayQuery) at once: a node is fetched once for all rays that come to it.
+  // Calls leaf(first, count, rays), which answers with the rays whose tMax it has lowered.  Include bvh_bundle.h.
   template <class Query, class Leaf>
-  void nearest(std::span<Query> bundle, Leaf&& leaf) const {
+  [[gnu::always_inline]] inline void nearest(std::span<Query> bundle, Leaf&& leaf) const {
     traverseTogether<true>(bundle, leaf);
   }
   // Here leaf(first, count, rays) answers with the rays that have found what they look for.
   template <class Query, class Leaf>
-  void any(std::span<Query> bundle, Leaf&& leaf) const {
+  [[gnu::always_inline]] inline void any(std::span<Query> bundle, Leaf&& leaf) const {
     traverseTogether<false>(bundle, leaf);
   }
 
  private:
+  // Where the tree's arithmetic cannot overflow: larger items count as unbounded, longer or shorter directions
+  // and farther origins see every item.
+  static constexpr double kLargest = 0x1p+500;
+  static constexpr double kSmallest = 0x1p-500;
+  static constexpr double kFarthest = 0x1p+100;  // in the tree's coordinates: 2^100 times the size of the scene
+
   // A reference to a child: the number of a node, or a leaf: kLeaf | (count - 1) << kFirstBits | first.
   static constexpr std::uint32_t kLeaf = 0x80000000u;
   static constexpr int kFirstBits = 28;
@@ -149,6 +147,36 @@ class Bvh {
         : first(child & ((1u << kFirstBits) - 1)), count(((child & ~kLeaf) >> kFirstBits) + 1) {}
   };
 
+  // The same of all rays of a bundle, side by side: ray i is lane i % 8 of group i / 8.
+  struct BoxRays {
+    static constexpr std::size_t kLanes = 8, kGroups = kBundleSize / kLanes;
+    Float8 nearOrigin[3][kGroups], farOrigin[3][kGroups], nearInverse[3][kGroups], farInverse[3][kGroups];
+    Float8 limit[kGroups];
+    float direction[3][kBundleSize];
+    double scale[kBundleSize], start[kBundleSize];
+    RaySet negative[3];  // direction along an axis
+
+    void setLimit(std::size_t i, double tMax) {
+      limit[i / kLanes][i % kLanes] = static_cast<float>((tMax * scale[i] - start[i]) * (1 + 0x1p-22));
+    }
+    BoxRay one(std::size_t i, std::uint32_t octant) const {
+      const std::size_t group = i / kLanes, lane = i % kLanes;
+      BoxRay ray;
+      for (int axis = 0; axis < 3; ++axis) {
+        ray.nearOrigin[axis] = all(nearOrigin[axis][group][lane]);
+        ray.farOrigin[axis] = all(farOrigin[axis][group][lane]);
+        ray.nearInverse[axis] = all(nearInverse[axis][group][lane]);
+        ray.farInverse[axis] = all(farInverse[axis][group][lane]);
+      }
+      ray.limit = all(limit[group][lane]);
+      ray.direction = Float4{direction[0][i], direction[1][i], direction[2][i], 0};
+      ray.scale = scale[i];
+      ray.start = start[i];
+      ray.octant = octant;
+      return ray;
+    }
+  };
+
   enum class Entry { kMissed, kEntered, kEverything };
   Entry enter(const Vec3& origin, const Vec3& direction, double tMin, double tMax, BoxRay& ray) const;
 
@@ -162,7 +190,13 @@ class Bvh {
   template <bool kSorted, class Leaf>
   bool traverseFrom(std::uint32_t top, BoxRay& ray, const double& tMax, Leaf&& leaf) const;
   template <bool kSorted, class Query, class Leaf>
-  void traverseTogether(std::span<Query> bundle, Leaf&& leaf) const;
+  [[gnu::always_inline]] inline void traverseTogether(std::span<Query> bundle, Leaf&& leaf) const;
+  // Rays that enter, and those that must be tested against everything.
+  struct Entered {
+    RaySet inside, everything;
+  };
+  template <class Query>
+  [[gnu::always_inline]] inline Entered enterTogether(std::span<const Query> bundle, BoxRays& rays) const;
 
   std::vector<Node> nodes_;
   std::vector<std::uint32_t> order_;  // items of leaves, unbounded items, empty items
@@ -238,79 +272,6 @@ bool Bvh::traverseFrom(std::uint32_t top, BoxRay& ray, const double& tMax, Leaf&
       entry = stack[--size];
     } while (std::bit_cast<float>(static_cast<std::uint32_t>(entry >> 32)) > ray.limit[0]);
     here = static_cast<std::uint32_t>(entry);
-  }
-}
-
-template <bool kSorted, class Query, class Leaf>
-void Bvh::traverseTogether(std::span<Query> bundle, Leaf&& leaf) const {
-  RaySet waiting = static_cast<RaySet>((std::uint64_t{1} << bundle.size()) - 1);
-  const auto visitLeaf = [&](std::uint32_t first, std::uint32_t count, RaySet rays) {
-    const RaySet answer = leaf(first, count, rays);
-    if constexpr (!kSorted) waiting &= ~answer;
-    return answer;
-  };
-  if (unbounded_ > 0) visitLeaf(inTree_, unbounded_, waiting);
-  if (inTree_ == 0) return;
-  BoxRay rays[kBundleSize];
-  RaySet octants[8] = {};
-  forEachRay(waiting, [&](std::size_t i) {
-    const RayQuery& query = bundle[i];
-    const Entry entry = enter(query.ray.origin, query.ray.direction, query.tMin, query.tMax, rays[i]);
-    if (entry == Entry::kEverything) visitLeaf(0u, inTree_, RaySet{1} << i);
-    if (entry == Entry::kEntered) octants[rays[i].octant] |= RaySet{1} << i;
-  });
-
-  struct Open {
-    float depth;  // of the near corner along one of the rays
-    std::uint32_t child;
-    RaySet rays;
-  };
-  Open stack[kStackSize];
-  for (std::uint32_t octant = 0; octant < 8; ++octant) {
-    if (octants[octant] == 0) continue;
-    int size = 0;
-    stack[size++] = {0, root_, octants[octant]};
-    while (size > 0) {
-      Open here = stack[--size];
-      here.rays &= waiting;
-      if (here.rays == 0) continue;
-      if ((here.child & kLeaf) != 0) {
-        const LeafItems items(here.child);
-        const RaySet answer = visitLeaf(items.first, items.count, here.rays);
-        if constexpr (kSorted) forEachRay(answer, [&](std::size_t i) { rays[i].setLimit(bundle[i].tMax); });
-        continue;
-      }
-      if (std::has_single_bit(here.rays)) {
-        const auto only = static_cast<std::size_t>(std::countr_zero(here.rays));
-        traverseFrom<kSorted>(here.child, rays[only], bundle[only].tMax,
-                              [&](std::uint32_t first, std::uint32_t count) {
-                                return visitLeaf(first, count, here.rays) != 0 && !kSorted;
-                              });
-        continue;
-      }
-      const Node& node = nodes_[here.child];
-      const Sides sides(node, octant);
-      Int4 touching{};  // for each child the set of the rays that come to it
-      forEachRay(here.rays, [&](std::size_t i) {
-        const auto bit = static_cast<std::int32_t>(RaySet{1} << i);
-        Float4 enters;
-        touching |= touchedBoxes(sides, rays[i], enters) & Int4{bit, bit, bit, bit};
-      });
-      Float4 depth{};
-      if constexpr (kSorted) {
-        const Float4 along = rays[std::countr_zero(here.rays)].direction;
-        depth = sides.nearX * along[0] + sides.nearY * along[1] + sides.nearZ * along[2];
-      }
-      const int base = size;
-      for (int lane = 0; lane < 4; ++lane) {
-        if (touching[lane] == 0) continue;
-        const Open open{depth[lane], node.child[lane], static_cast<RaySet>(touching[lane])};
-        int at = size++;
-        if constexpr (kSorted)
-          for (; at > base && stack[at - 1].depth < open.depth; --at) stack[at] = stack[at - 1];
-        stack[at] = open;
-      }
-    }
   }
 }
 
