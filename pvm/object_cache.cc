@@ -3,11 +3,11 @@
 
 namespace rayshade {
 
-Ground ObjectCache::find(CellId cell) {
-  ++counts_.asked;
+Ground ObjectCache::find(CellId cell, std::size_t rays) {
+  counts_.asked += rays;
   const auto found = cells_.find(static_cast<std::uint32_t>(cell));
   if (found == cells_.end()) return {};
-  ++counts_.hits;
+  counts_.hits += rays;
   Cell& c = *found->second;
   order_.splice(order_.begin(), order_, c.place);
   return {&c.model, &c.region};

@@ -31,8 +31,8 @@ class ObjectCache {
     mostBytes_ = mostBytes;
   }
 
-  // The cell, which becomes the most recently used one; nothing when it is not here.
-  Ground find(CellId cell);
+  // The cell, for so many rays; it becomes the most recently used one.  Nothing when it is not here.
+  Ground find(CellId cell, std::size_t rays = 1);
   bool contains(CellId cell) const { return cells_.contains(static_cast<std::uint32_t>(cell)); }
 
   // Takes a cell in and makes room for it.

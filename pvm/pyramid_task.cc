@@ -32,14 +32,11 @@ void PyramidTask::on(TaskId from, Configure message) {
   parked_.clear();
   const std::uint32_t clusters = message.directory.clusters;
   const auto base = static_cast<std::uint32_t>(message.directory.voxelTasks.size()) + message.number;
-  Contents contents(message.tree, message.cellContents);
-  worker_.begin({std::move(message.setting), std::move(message.tree), std::move(message.directory),
-                 message.number % clusters, message.exposure, message.policy, std::move(message.cellBytes),
-                 std::move(contents)},
-                base);
+  const std::uint32_t cluster = message.number % clusters;
+  worker_.begin(std::move(message), cluster, base);
   desk_.link.connect(worker_.at().directory.voxelTasks);
   desk_.link.connect(worker_.at().directory.shadeTasks);
-  desk_.outbox.post(from, Ready{message.epoch, arithmeticFingerprint(), 0, 0, 0});
+  desk_.outbox.post(from, Ready{desk_.epoch, arithmeticFingerprint(), 0, 0, 0});
   for (int i = 0; i < kAhead; ++i) desk_.outbox.post(from, PyramidWanted{});
 }
 
@@ -187,7 +184,7 @@ void PyramidTask::on(TaskId, CellItems message) {
     std::vector<WaitingRay> rays = std::move(waiting->second);
     parked_.erase(waiting);
     // The cell is here now and may be gone later: each ray passes it at once.
-    for (WaitingRay& ray : rays) trace(std::move(ray));
+    for (WaitingRay& ray : rays) follow(std::move(ray));
   }
   worker_.release(cell);
 }
@@ -195,14 +192,21 @@ void PyramidTask::on(TaskId, CellItems message) {
 // ---- rays
 
 bool PyramidTask::work(double until) {
-  for (int done = 1; !secondaries_.empty() || !ready_.empty(); ++done) {
+  while (!secondaries_.empty() || !ready_.empty()) {
+    batch_.clear();
     if (!secondaries_.empty()) {
-      WaitingRay ray = std::move(secondaries_.back());
-      secondaries_.pop_back();
-      trace(std::move(ray));
+      const std::size_t count = std::min(secondaries_.size(), kBundleSize);
+      std::move(secondaries_.end() - static_cast<std::ptrdiff_t>(count), secondaries_.end(),
+                std::back_inserter(batch_));
+      secondaries_.resize(secondaries_.size() - count);
+      trace(batch_, [this](RayTask&& task) { follow({std::move(task), 0}); });
     } else {
       Tile& tile = *ready_.front();
-      trace(tile);
+      while (batch_.size() < kBundleSize && tile.next < tile.rays.size()) {
+        batch_.push_back({std::move(tile.rays[tile.next]), 0, {host_, tile.firstRecord + tile.next, 0}});
+        ++tile.next;
+      }
+      trace(batch_, [this](RayTask&& task) { followToHorizon(std::move(task)); });
       if (tile.next == tile.rays.size()) {
         finish(tile);
         const auto gone = ready_.front();
@@ -210,30 +214,53 @@ bool PyramidTask::work(double until) {
         tiles_.erase(gone);
       }
     }
-    if (done % 16 == 0 && desk_.link.now() >= until) break;
+    if (desk_.link.now() >= until) break;
   }
   return !secondaries_.empty() || !ready_.empty();
 }
 
-// The next ray of a tile.
-void PyramidTask::trace(Tile& tile) {
-  Ray& ray = tile.rays[tile.next];
-  const ReplyTo to{host_, tile.firstRecord + tile.next, 0};
-  ++tile.next;
+// Rays of one pyramid, or of neighbouring hits; `alone` takes those that cannot be settled together.
+template <class Alone>
+void PyramidTask::trace(std::span<RayTask> tasks, Alone alone) {
+  Patchwork::Found found[kBundleSize];
+  worker_.visit(tasks, found);
+  FoundHit hits[kBundleSize];
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    if (!found[i].settled) {
+      alone(std::move(tasks[i]));
+    } else if (found[i].hit.found()) {
+      hits[count++] = {&tasks[i].ray, tasks[i].to, found[i].hit, found[i].model};
+    } else {
+      worker_.answer(tasks[i].to, missed(tasks[i].ray, worker_.at().setting));
+    }
+  }
+  shade(std::span(hits).first(count));
+}
+
+void PyramidTask::shade(std::span<const FoundHit> hits) {
+  worker_.shade(hits, [this](RayTask&& child) { forward(std::move(child)); });
+}
+
+// A primary ray through the cells that are here; behind the horizon demand driven becomes data driven.
+void PyramidTask::followToHorizon(RayTask&& task) {
   std::uint32_t unit = 0;
-  const LocalProgress progress = followLocally(worker_.at().tree, *this, ray, unit, worker_.counts());
-  switch (progress.state) {
-    case LocalProgress::State::hit:
-      worker_.shade(ray, to, progress.hit, *progress.model,
-                    [this](RayTask&& child) { forward(std::move(child)); });
-      break;
-    case LocalProgress::State::left:
-      worker_.answer(to, missed(ray, worker_.at().setting));
-      break;
-    case LocalProgress::State::missing:  // behind the horizon: demand driven becomes data driven
-      ++forwarded_;
-      desk_.outbox.post(worker_.at().ownerOf(progress.voxel), RayTask{std::move(ray), progress.step, to});
-      break;
+  const LocalProgress progress = followLocally(worker_.at().tree, *this, task.ray, unit, worker_.counts());
+  if (progress.state == LocalProgress::State::missing) {
+    ++forwarded_;
+    task.step = progress.step;
+    desk_.outbox.post(worker_.at().ownerOf(progress.voxel), task);
+  } else {
+    conclude(task, progress);
+  }
+}
+
+void PyramidTask::conclude(const RayTask& task, const LocalProgress& progress) {
+  if (progress.state == LocalProgress::State::hit) {
+    const FoundHit hit{&task.ray, task.to, progress.hit, progress.model};
+    shade(std::span(&hit, 1));
+  } else {
+    worker_.answer(task.to, missed(task.ray, worker_.at().setting));
   }
 }
 
@@ -247,7 +274,7 @@ void PyramidTask::finish(Tile& tile) {
 // A secondary ray: to the voxel where it begins, or into the own queue.
 void PyramidTask::forward(RayTask task) {
   if (!worker_.at().policy.secondariesTravel) {
-    secondaries_.push_back({std::move(task), 0});
+    secondaries_.push_back(std::move(task));
     return;
   }
   VoxelWalk walk(worker_.at().tree, task.ray.origin, task.ray.direction);
@@ -256,22 +283,16 @@ void PyramidTask::forward(RayTask task) {
   desk_.outbox.post(worker_.at().ownerOf(first.where), task);
 }
 
-void PyramidTask::trace(WaitingRay&& waiting) {
+// A secondary ray, which waits for every cell that it needs.
+void PyramidTask::follow(WaitingRay&& waiting) {
   RayTask& task = waiting.task;
   const LocalProgress progress =
       followLocally(worker_.at().tree, *this, task.ray, waiting.unit, worker_.counts());
-  switch (progress.state) {
-    case LocalProgress::State::hit:
-      worker_.shade(task.ray, task.to, progress.hit, *progress.model,
-                    [this](RayTask&& child) { forward(std::move(child)); });
-      break;
-    case LocalProgress::State::left:
-      worker_.answer(task.to, missed(task.ray, worker_.at().setting));
-      break;
-    case LocalProgress::State::missing:
-      worker_.want(progress.cell);
-      parked_[static_cast<std::uint32_t>(progress.cell)].push_back(std::move(waiting));
-      break;
+  if (progress.state == LocalProgress::State::missing) {
+    worker_.want(progress.cell);
+    parked_[static_cast<std::uint32_t>(progress.cell)].push_back(std::move(waiting));
+  } else {
+    conclude(task, progress);
   }
 }
 

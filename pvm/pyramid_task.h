@@ -58,8 +58,12 @@ class PyramidTask : public GroundSource {
   std::vector<CellId> cellsOf(const std::vector<Ray>& rays,
                               const std::vector<SamplePosition>& positions) const;
   std::size_t beforeHorizon(const std::vector<CellId>& cells, std::size_t rays) const;
-  void trace(Tile& tile);
-  void trace(WaitingRay&& waiting);
+  template <class Alone>
+  void trace(std::span<RayTask> tasks, Alone alone);
+  void shade(std::span<const FoundHit> hits);
+  void followToHorizon(RayTask&& task);
+  void follow(WaitingRay&& waiting);
+  void conclude(const RayTask& task, const LocalProgress& progress);
   void forward(RayTask task);
   void finish(Tile& tile);
 
@@ -72,7 +76,8 @@ class PyramidTask : public GroundSource {
   std::list<Tile> tiles_;                                                                   // all of them
   std::deque<std::list<Tile>::iterator> ready_;                                             // with all cells
   std::unordered_map<std::uint32_t, std::vector<std::list<Tile>::iterator>> waitingTiles_;  // by cell
-  std::vector<WaitingRay> secondaries_;                                // to be traced, last in first out
+  std::vector<RayTask> secondaries_;  // to be traced, last in first out
+  std::vector<RayTask> batch_;        // being traced
   std::unordered_map<std::uint32_t, std::vector<WaitingRay>> parked_;  // by cell
   std::uint64_t pyramids_ = 0, pyramidRays_ = 0, forwarded_ = 0;
 };

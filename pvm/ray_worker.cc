@@ -14,22 +14,186 @@ constexpr double kExpectedUses = 64;
 
 }  // namespace
 
-void RayWorker::begin(TraceSetting setting, std::uint32_t finder) {
-  at_ = std::move(setting);
+void RayWorker::begin(Configure&& message, std::uint32_t cluster, std::uint32_t finder) {
+  Contents contents(message.tree, message.cellContents);
+  at_ = {std::move(message.setting),   std::move(message.tree), std::move(message.directory), cluster,
+         message.exposure,             message.policy,          std::move(message.cellBytes),
+         std::move(contents)};
   finder_ = finder;
   numbers_.assign(at_.directory.shadeTasks.size(), 0);
   occluders_.assign(lightPointCount(at_.setting), {});
-  visitorOccluders_.assign(lightPointCount(at_.setting), kNone);
   parked_.clear();
   parkedCount_ = 0;
   asked_.clear();
   toAsk_.clear();
   queued_.clear();
   cache_.begin(at_.policy.cacheBytes);
+  layPatches(message.cellContents);
   // What does not fit is thrown out before it has been used as often.
   const double model = std::accumulate(at_.cellBytes.begin(), at_.cellBytes.end(), 0.0);
   expectedUses_ =
       kExpectedUses * std::min(1.0, static_cast<double>(at_.policy.cacheBytes) / std::max(model, 1.0));
+}
+
+// Own voxels as wholes; of others, cell by cell, what may be fetched.  A task that fetches nothing finds out by the walk of
+// a ray whether it must go elsewhere.
+void RayWorker::layPatches(std::span<const Bounds> cellContents) {
+  patches_.clear();
+  std::vector<Bounds> boxes;
+  const BinTree& tree = at_.tree;
+  knowsOthers_ = own_ == nullptr || fetches();
+  for (std::uint32_t cell = 0; cell < cellCount(tree); ++cell) {
+    const Bounds& box = cellContents[cell];
+    if (box.empty()) continue;
+    const VoxelId voxel = voxelOfCell(tree, CellId{cell});
+    const bool mine = own_ != nullptr && at_.ownerOf(voxel) == desk_.link.self();
+    if (!mine && !knowsOthers_) continue;
+    if (mine && !patches_.empty() && patches_.back().mine && patches_.back().voxel == voxel) {
+      boxes.back() = join(boxes.back(), box);  // the cells of a voxel are numbered one after the other
+    } else {
+      boxes.push_back(box);
+      patches_.push_back({voxel, CellId{cell}, mine});
+    }
+  }
+  patchwork_ = Patchwork(std::move(boxes));
+}
+
+Ground RayWorker::patch(std::uint32_t number, std::size_t rays) {
+  const PatchPlace& place = patches_[number];
+  return place.mine ? own_->own(place.voxel) : cache_.find(place.cell, rays);
+}
+
+// Where a ray enters the voxel at a position of its walk: what lies before has been looked at.
+double RayWorker::beginOf(Vec3 origin, Vec3 direction, std::uint32_t step) const {
+  if (step == 0) return 0;
+  const auto at = stepAt<VoxelId>(at_.tree, origin, direction, step);
+  return at ? at->tEnter : kInfinity;
+}
+
+void RayWorker::visit(std::span<const RayTask> rays, std::span<Patchwork::Found> found) {
+  Segment segments[kBundleSize];
+  double begin[kBundleSize];
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    segments[i] = Segment(rays[i].ray);
+    begin[i] = beginOf(rays[i].ray.origin, rays[i].ray.direction, rays[i].step);
+  }
+  patchwork_.visit(*this, std::span(segments).first(rays.size()), begin, found, counts_);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    found[i].settled = found[i].settled && knowsOthers_;
+    counts_.hits += found[i].settled && found[i].hit.found();
+  }
+}
+
+std::optional<WalkStep<VoxelId>> RayWorker::elsewhere(const LocalRay& ray, double t, std::uint32_t& step) const {
+  VoxelWalk walk(at_.tree, ray.origin, ray.direction);
+  WalkStep<VoxelId> at;
+  for (std::uint32_t i = 0; walk.next(at) && at.tEnter <= t; ++i) {
+    if (i < step || at_.ownerOf(at.where) == desk_.link.self()) continue;
+    if (!at_.contents.mayMeet(at.where, ray.origin, ray.direction, at.tEnter, std::min(at.tExit, t))) continue;
+    step = i;
+    return at;
+  }
+  return std::nullopt;
+}
+
+void RayWorker::lookAt(std::span<const FoundHit> hits) {
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    Shading& shading = shadings_[i];
+    shading.at = evaluateSurface(*hits[i].model, hits[i].hit, *hits[i].ray, at_.setting);
+    shading.spawned = spawnSecondary(*hits[i].ray, shading.at, at_.setting);
+    shading.gathered.light.resize(shading.spawned.lit.size());
+    shading.pending.clear();
+  }
+}
+
+// The shadow rays of all hits to one light point.
+void RayWorker::askLight(std::span<const FoundHit> hits, std::size_t point) {
+  Segment segments[kBundleSize];
+  std::size_t from[kBundleSize], count = 0;
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    if (shadings_[i].spawned.lit[point] != Lit::asked) continue;
+    const LightSample& sample = shadings_[i].spawned.samples[point];
+    segments[count] = {originOff(shadings_[i].at, sample.shadowToward), sample.shadowToward, sample.shadowDistance,
+                       hits[i].ray->moment};
+    from[count++] = i;
+  }
+  if (count == 0) return;
+  counts_.shadowRays += count;
+  const double begin[kBundleSize] = {};
+  Patchwork::Light light[kBundleSize];
+  patchwork_.obstruct(*this, std::span(segments).first(count), begin, light, counts_);
+  for (std::size_t k = 0; k < count; ++k) {
+    Shading& shading = shadings_[from[k]];
+    Color& through = shading.gathered.light[point];
+    if (light[k] == Patchwork::Light::dark || (light[k] == Patchwork::Light::clear && knowsOthers_)) {
+      through = light[k] == Patchwork::Light::clear ? kWhite : kBlack;
+      continue;
+    }
+    if (light[k] == Patchwork::Light::clear) {
+      LocalProgress missing;
+      if (const auto next = elsewhere(segments[k].ray, segments[k].tMax, missing.step)) {
+        missing.voxel = next->where;
+        shading.pending.push_back({shadowRay(*hits[from[k]].ray, shading.at, shading.spawned.samples[point]), 0,
+                                   static_cast<Slot>(point), missing});
+      } else {
+        through = kWhite;
+      }
+      continue;
+    }
+    ShadowRay shadow = shadowRay(*hits[from[k]].ray, shading.at, shading.spawned.samples[point]);
+    Occluder& occluder = occluders_[point];
+    shadow.occluder = occluder.object;
+    shadow.occluderGround = occluder.ground;
+    std::uint32_t unit = 0;
+    const LocalProgress progress = followLocally(at_.tree, *this, shadow, unit, at_.setting, counts_);
+    occluder = {shadow.occluder, shadow.occluderGround};
+    if (progress.state == LocalProgress::State::missing) {
+      shading.pending.push_back({std::move(shadow), unit, static_cast<Slot>(point), progress});
+    } else {
+      through = progress.state == LocalProgress::State::hit ? kBlack : shadow.through;
+    }
+  }
+}
+
+// Tells a shade task of an intersection, and says where the colours of its secondary rays go; or shades it.
+ReplyTo RayWorker::conclude(const FoundHit& found, Shading& shading) {
+  const Secondary& spawned = shading.spawned;
+  const std::size_t chosen = chooseShadeTask(at_.directory, serial_++);
+  const TaskId shader = at_.directory.shadeTasks[chosen];
+  const RecordId record = recordOf(finder_, numbers_[chosen]);
+  const Ray& ray = *found.ray;
+  const bool complete = shading.pending.empty() && !spawned.transmitted && !spawned.reflected;
+  expect_.hit = describe(ray, found.hit.t, shading.at, spawned, at_.setting);
+  if (complete && at_.policy.shadeAtOnce) {
+    ++combined_;
+    answer(found.to, combine(expect_.hit, shading.gathered, at_.setting, spawned.samples));
+    return {};
+  }
+  if (!complete) ++numbers_[chosen];
+  expect_.record = record;
+  expect_.to = found.to;
+  expect_.gathered = shading.gathered;
+  expect_.pending.clear();
+  for (const Pending& pending : shading.pending) expect_.pending.push_back(pending.slot);
+  desk_.outbox.post(shader, expect_);
+  if (!shading.pending.empty()) sendOn({shader, record, ray.moment, ray.sample, ray.key}, shading.pending);
+  return {shader, record, 0};
+}
+
+// Shadow rays of one intersection that miss something: to the tasks that have it, or into waiting until it is here.
+void RayWorker::sendOn(const ShadowHead& head, std::span<Pending> pending) {
+  onward_.begin(head);
+  while (!pending.empty()) {
+    const LightSource& light = at_.setting.lights[lightPoint(at_.setting, pending[0].slot).light];
+    std::size_t ofLight = 0;
+    const auto sameLight = [&](const Pending& p) {
+      return &at_.setting.lights[lightPoint(at_.setting, p.slot).light] == &light;
+    };
+    while (ofLight < pending.size() && sameLight(pending[ofLight])) ++ofLight;
+    sendOn(head, pending.first(ofLight), light);
+    pending = pending.subspan(ofLight);
+  }
+  onward_.post(desk_.outbox);
 }
 
 Ground RayWorker::cell(CellId cell) {
@@ -63,47 +227,73 @@ bool RayWorker::fetchingPays(CellId missing, std::size_t rays) const {
          kBytesPerForward * expectedUses_ * static_cast<double>(rays);
 }
 
-void RayWorker::follow(const ShadowHead& head, std::span<const ShadowTravel> rays, const Model& model,
-                       const VoxelSource& voxels) {
-  onward_.begin(head);
-  settled_.record = head.record;
-  settled_.colors.clear();
-  for (const ShadowTravel& travel : rays) {
-    ShadowRay shadow = shadowOf(head, travel);
-    const bool hinted = travel.slot < visitorOccluders_.size();  // else it is no light point of this scene
-    if (hinted) shadow.occluder = visitorOccluders_[travel.slot];
-    const Progress progress =
-        followShadow(at_.tree, model, voxels, shadow, travel.step, at_.setting, counts_);
-    if (hinted) visitorOccluders_[travel.slot] = shadow.occluder;
-    if (progress.state == Progress::State::elsewhere) {
-      onward_.add(at_.ownerOf(progress.voxel), travelOf(shadow, travel.slot, progress.step));
-    } else {
-      settled_.colors.push_back(
-          {travel.slot, progress.state == Progress::State::hit ? kBlack : shadow.through});
+void RayWorker::follow(std::span<const Visitors> visitors, const Model& model, const VoxelSource& voxels) {
+  visitorLight_.clear();
+  Segment segments[kBundleSize];
+  double begin[kBundleSize];
+  std::size_t count = 0;
+  const auto look = [&] {
+    const std::size_t known = visitorLight_.size();
+    visitorLight_.resize(known + count);
+    patchwork_.obstruct(*this, std::span(segments).first(count), begin, std::span(visitorLight_).subspan(known),
+                        counts_);
+    count = 0;
+  };
+  for (const Visitors& some : visitors) {
+    for (const ShadowTravel& travel : some.rays) {
+      segments[count] = {travel.origin, travel.direction, travel.distance, some.head.moment};
+      segments[count].tMin = travel.last;
+      begin[count] = beginOf(travel.origin, travel.direction, travel.step);
+      if (++count == kBundleSize) look();
     }
   }
-  onward_.post(desk_.outbox);
-  if (!settled_.colors.empty()) desk_.outbox.post(head.shader, settled_);
+  if (count > 0) look();
+
+  std::size_t next = 0;
+  for (const Visitors& some : visitors) {
+    onward_.begin(some.head);
+    settled_.record = some.head.record;
+    settled_.colors.clear();
+    for (const ShadowTravel& travel : some.rays) {
+      const Patchwork::Light light = visitorLight_[next++];
+      std::uint32_t step = travel.step;
+      if (light == Patchwork::Light::missing || (light == Patchwork::Light::clear && !knowsOthers_)) {
+        if (const auto next = elsewhere({travel.origin, travel.direction, 1}, travel.distance, step)) {
+          ShadowTravel rest = travel;
+          rest.step = step;
+          onward_.add(at_.ownerOf(next->where), rest);
+          continue;
+        }
+      }
+      if (light != Patchwork::Light::filtered) {
+        settled_.colors.push_back({travel.slot, light == Patchwork::Light::dark ? kBlack : travel.through});
+        continue;
+      }
+      ShadowRay shadow = shadowOf(some.head, travel);
+      const Progress progress = followShadow(at_.tree, model, voxels, shadow, travel.step, at_.setting, counts_);
+      if (progress.state == Progress::State::elsewhere) {
+        onward_.add(at_.ownerOf(progress.voxel), travelOf(shadow, travel.slot, progress.step));
+      } else {
+        settled_.colors.push_back(
+            {travel.slot, progress.state == Progress::State::hit ? kBlack : shadow.through});
+      }
+    }
+    onward_.post(desk_.outbox);
+    if (!settled_.colors.empty()) desk_.outbox.post(some.head.shader, settled_);
+  }
 }
 
-// The rays of the bundle have all met something that is not here: decide, for the bundle as a whole, what to do.
-void RayWorker::traceBundle(Bundle&& bundle, const LightSource& light) {
-  const Pending& first = bundle.rays.front();
-  ShadowRay probe = first.shadow;
-  std::uint32_t unit = first.unit;
-  const LocalProgress missing = followLocally(at_.tree, *this, probe, unit, at_.setting, counts_);
-  const bool fetch =
-      at_.policy.shadows == ShadowPolicy::local ||
-      (at_.policy.shadows == ShadowPolicy::automatic && fetchingPays(missing.cell, bundle.rays.size()));
+// Of one light: decide, for the bundle as a whole, what to do.
+void RayWorker::sendOn(const ShadowHead& head, std::span<Pending> pending, const LightSource& light) {
+  const CellId missing = pending[0].missing.cell;
+  const bool fetch = at_.policy.shadows == ShadowPolicy::local ||
+                     (at_.policy.shadows == ShadowPolicy::automatic && fetchingPays(missing, pending.size()));
   if (fetch) {
-    park(std::move(bundle), missing.cell, &light);
+    park({head, {std::make_move_iterator(pending.begin()), std::make_move_iterator(pending.end())}}, missing, &light);
     return;
   }
-  for (Pending& pending : bundle.rays) {
-    const LocalProgress at =
-        followLocally(at_.tree, *this, pending.shadow, pending.unit, at_.setting, counts_);
-    onward_.add(at_.ownerOf(at.voxel), travelOf(pending.shadow, pending.slot, at.step));
-  }
+  for (const Pending& p : pending)
+    onward_.add(at_.ownerOf(p.missing.voxel), travelOf(p.shadow, p.slot, p.missing.step));
 }
 
 void RayWorker::park(Bundle&& bundle, CellId missing, const LightSource* light) {

@@ -1,6 +1,8 @@
 // What voxel-trace and pyramid-trace tasks have in common: shading a hit, and shadow rays that are traced where they were
 // spawned.
 //
+// Rays are traced in bundles (rayshade/space/patchwork.h); what a bundle cannot settle goes on ray by ray.
+//
 // At a hit the secondary rays are spawned and a shade task is told.  Shadow rays are followed as far as the voxels of this
 // task go; what comes after is decided by the policy: `forward` sends them to the next voxel's task, `local` fetches the
 // cells that are missing into the object cache and goes on when they have come (Reinhard & Jansen, section 5), `automatic`
@@ -9,6 +11,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <deque>
 #include <map>
 #include <unordered_set>
@@ -17,6 +20,7 @@
 #include "rayshade/shading/evaluate.h"
 #include "rayshade/space/clip_list.h"
 #include "rayshade/space/contents.h"
+#include "rayshade/space/patchwork.h"
 
 namespace rayshade {
 
@@ -75,13 +79,21 @@ class Onward {
   std::size_t used_ = 0;
 };
 
-class RayWorker : public GroundSource {
+// A hit of one of this task's rays.
+struct FoundHit {
+  const Ray* ray = nullptr;
+  ReplyTo to;
+  Hit hit;
+  const Model* model = nullptr;
+};
+
+class RayWorker : public GroundSource, public PatchSource {
  public:
   // `own`: null for a task that holds no voxels.
   RayWorker(TaskDesk& desk, const OwnVoxels* own) : desk_(desk), own_(own) {}
 
   // A new epoch: everything that waits is dropped.  `finder`: this task's number among those that find intersections.
-  void begin(TraceSetting setting, std::uint32_t finder);
+  void begin(Configure&& message, std::uint32_t cluster, std::uint32_t finder);
 
   void setWeights(std::vector<std::uint32_t> weights) {
     if (weights.size() == at_.directory.shadeTasks.size()) at_.directory.shadeWeights = std::move(weights);
@@ -94,17 +106,26 @@ class RayWorker : public GroundSource {
   std::size_t waiting() const { return parkedCount_; }
   std::uint64_t combined() const { return combined_; }
 
-  // A ray of this task has hit.  `queue` takes the transmitted and reflected rays.
+  // What at most kBundleSize rays meet first, of what is here.
+  void visit(std::span<const RayTask> rays, std::span<Patchwork::Found> found);
+  // The next voxel of others, from `step` of the walk on, in which the ray could meet something before t.
+  std::optional<WalkStep<VoxelId>> elsewhere(const LocalRay& ray, double t, std::uint32_t& step) const;
+
+  // At most kBundleSize rays of this task have hit.  `queue` takes the transmitted and reflected rays.
   template <class Queue>
-  void shade(const Ray& ray, const ReplyTo& to, const Hit& hit, const Model& model, Queue queue);
+  void shade(std::span<const FoundHit> hits, Queue queue);
 
   void answer(const ReplyTo& to, Color color) {
     desk_.outbox.post(to.task, Answer{to.record, to.slot, color});
   }
 
-  // Follows shadow rays that have come from elsewhere through this task's own voxels.
-  void follow(const ShadowHead& head, std::span<const ShadowTravel> rays, const Model& model,
-              const VoxelSource& voxels);
+  // Shadow rays of one intersection that have come from elsewhere.
+  struct Visitors {
+    ShadowHead head;
+    std::span<const ShadowTravel> rays;
+  };
+  // Follows them through this task's own voxels.
+  void follow(std::span<const Visitors> visitors, const Model& model, const VoxelSource& voxels);
 
   // Is fetching the cell expected to move fewer bytes than sending on so many rays that come to it?
   bool fetchingPays(CellId missing, std::size_t rays) const;
@@ -119,6 +140,7 @@ class RayWorker : public GroundSource {
 
   Ground voxel(VoxelId voxel) override { return own_ == nullptr ? Ground{} : own_->own(voxel); }
   Ground cell(CellId cell) override;
+  Ground patch(std::uint32_t number, std::size_t rays) override;
   bool fetches() override { return at_.policy.shadows != ShadowPolicy::forward; }
   bool mayMeet(VoxelId voxel, const Ray& ray, double tMin, double tMax) override {
     return at_.contents.mayMeet(voxel, ray.origin, ray.direction, tMin, tMax);
@@ -129,6 +151,7 @@ class RayWorker : public GroundSource {
     ShadowRay shadow;
     std::uint32_t unit = 0;
     Slot slot = 0;
+    LocalProgress missing{};  // what it misses
   };
   struct Bundle {  // of one light and one hit
     ShadowHead head;
@@ -141,7 +164,22 @@ class RayWorker : public GroundSource {
     std::uint32_t ground = 0;
   };
 
-  void traceBundle(Bundle&& bundle, const LightSource& light);
+  // A hit that is being shaded.
+  struct Shading {
+    SurfacePoint at;
+    Secondary spawned;
+    Gathered gathered;             // what is known already
+    std::vector<Pending> pending;  // what misses something that is not here
+  };
+
+  void layPatches(std::span<const Bounds> cellContents);
+  double beginOf(Vec3 origin, Vec3 direction, std::uint32_t step) const;
+  // The three parts of shade().
+  void lookAt(std::span<const FoundHit> hits);
+  void askLight(std::span<const FoundHit> hits, std::size_t point);
+  ReplyTo conclude(const FoundHit& hit, Shading& shading);
+  void sendOn(const ShadowHead& head, std::span<Pending> pending);
+  void sendOn(const ShadowHead& head, std::span<Pending> pending, const LightSource& light);
   void park(Bundle&& bundle, CellId missing, const LightSource* light);
   void resume(Bundle&& bundle);
   void askMore();
@@ -152,12 +190,23 @@ class RayWorker : public GroundSource {
   TraceCounts counts_;
   CacheCounts shadowCounts_;
   ObjectCache cache_;
+  // One's own voxels, and the cells of all others.
+  struct PatchPlace {
+    VoxelId voxel{};
+    CellId cell{};
+    bool mine = false;
+  };
+  std::vector<PatchPlace> patches_;
+  bool knowsOthers_ = false;  // the cells of others are patches, too
+  Patchwork patchwork_;
+  std::array<Shading, kBundleSize> shadings_;  // kept: they take memory
   Model noModel_;
   Region nothing_;                             // of an empty cell
-  std::vector<Occluder> occluders_;            // by light point; of rays that begin here
-  std::vector<ObjectIndex> visitorOccluders_;  // the same of rays from elsewhere
+  std::vector<Occluder> occluders_;  // by light point
   Onward onward_;
   LightAnswers settled_;
+  Expect expect_;
+  std::vector<Patchwork::Light> visitorLight_;
 
   std::uint32_t finder_ = 0;
   std::uint64_t serial_ = 0;                                       // of the next intersection found here
@@ -172,66 +221,21 @@ class RayWorker : public GroundSource {
 };
 
 template <class Queue>
-void RayWorker::shade(const Ray& ray, const ReplyTo& to, const Hit& hit, const Model& model, Queue queue) {
-  const SurfacePoint at = evaluateSurface(model, hit, ray, at_.setting);
-  Secondary spawned = spawnSecondary(ray, at, at_.setting);
-  const std::size_t chosen = chooseShadeTask(at_.directory, serial_++);
-  const TaskId shader = at_.directory.shadeTasks[chosen];
-  Expect expect;
-  expect.record = recordOf(finder_, numbers_[chosen]);
-  expect.to = to;
-  expect.gathered.light.resize(spawned.lit.size());
-  const ShadowHead head{shader, expect.record, ray.moment, ray.sample, ray.key};
-  onward_.begin(head);
-
-  // Shadow rays first: those that are settled without leaving this task travel with the intersection.
-  std::size_t point = 0;
-  for (const LightSource& light : at_.setting.lights) {
-    const std::size_t end = point + static_cast<std::size_t>(pointsOf(light));
-    Bundle bundle;
-    for (; point < end; ++point) {
-      if (spawned.lit[point] != Lit::asked) continue;
-      ++counts_.shadowRays;
-      const auto slot = static_cast<Slot>(point);
-      ShadowRay shadow = shadowRay(ray, at, spawned.samples[point]);
-      Occluder& occluder = occluders_[point];
-      shadow.occluder = occluder.object;
-      shadow.occluderGround = occluder.ground;
-      std::uint32_t unit = 0;
-      const LocalProgress progress = followLocally(at_.tree, *this, shadow, unit, at_.setting, counts_);
-      occluder = {shadow.occluder, shadow.occluderGround};
-      if (progress.state != LocalProgress::State::missing) {
-        expect.gathered.light[point] = progress.state == LocalProgress::State::hit ? kBlack : shadow.through;
-        continue;
-      }
-      expect.pending.push_back(slot);
-      if (at_.policy.shadows == ShadowPolicy::forward) {
-        onward_.add(at_.ownerOf(progress.voxel), travelOf(shadow, slot, progress.step));
-      } else {
-        bundle.rays.push_back({std::move(shadow), unit, slot});
-      }
+void RayWorker::shade(std::span<const FoundHit> hits, Queue queue) {
+  lookAt(hits);
+  const std::size_t points = lightPointCount(at_.setting);
+  for (std::size_t point = 0; point < points; ++point) askLight(hits, point);
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    const ReplyTo back = conclude(hits[i], shadings_[i]);
+    OnwardRays& onward = shadings_[i].spawned;
+    if (onward.transmitted) {
+      ++counts_.transmittedRays;
+      queue(RayTask{std::move(*onward.transmitted), 0, {back.task, back.record, kTransmittedSlot}});
     }
-    if (bundle.rays.empty()) continue;
-    bundle.head = head;
-    traceBundle(std::move(bundle), light);
-  }
-  onward_.post(desk_.outbox);
-  expect.hit = describe(ray, hit.t, at, spawned, at_.setting);
-  const bool complete = expect.pending.empty() && !spawned.transmitted && !spawned.reflected;
-  if (complete && at_.policy.shadeAtOnce) {
-    ++combined_;
-    answer(to, combine(expect.hit, expect.gathered, at_.setting, spawned.samples));
-    return;
-  }
-  if (!complete) ++numbers_[chosen];
-  desk_.outbox.post(shader, expect);
-  if (spawned.transmitted) {
-    ++counts_.transmittedRays;
-    queue(RayTask{std::move(*spawned.transmitted), 0, {shader, expect.record, kTransmittedSlot}});
-  }
-  if (spawned.reflected) {
-    ++counts_.reflectedRays;
-    queue(RayTask{std::move(*spawned.reflected), 0, {shader, expect.record, kReflectedSlot}});
+    if (onward.reflected) {
+      ++counts_.reflectedRays;
+      queue(RayTask{std::move(*onward.reflected), 0, {back.task, back.record, kReflectedSlot}});
+    }
   }
 }
 

@@ -44,18 +44,15 @@ void VoxelTask::on(TaskId from, Configure message) {
   host_ = from;
   exhibition_ = message.exhibition;
   number_ = message.number % directory.tasksPerCluster();
-  const std::uint32_t cluster = message.number / directory.tasksPerCluster();
-  Contents contents(message.tree, message.cellContents);
-  worker_.begin({std::move(message.setting), std::move(message.tree), std::move(message.directory), cluster,
-                 message.exposure, message.policy, std::move(message.cellBytes), std::move(contents)},
-                message.number);
+  const std::uint32_t number = message.number, cluster = number / directory.tasksPerCluster();
+  worker_.begin(std::move(message), cluster, number);
   desk_.link.connect(worker_.at().directory.voxelTasks);
   desk_.link.connect(worker_.at().directory.shadeTasks);
   desk_.link.connect(worker_.at().directory.pyramidTasks);
   // The host never sends another tree without items, but a message may come from anybody.
   if (itemsAreNew_ || regions_.size() != voxelCount(worker_.at().tree)) buildRegions();
   itemsAreNew_ = false;
-  desk_.outbox.post(from, Ready{message.epoch, arithmeticFingerprint(),
+  desk_.outbox.post(from, Ready{desk_.epoch, arithmeticFingerprint(),
                                 model_->store().objectsOf(kWorld).size(), owned_, model_->leftOut()});
 }
 
@@ -175,61 +172,83 @@ void VoxelTask::queue(RayTask&& task) {
 }
 
 bool VoxelTask::work(double until) {
-  constexpr int kBetweenLooksAtTheClock = 16;
-  for (int done = 1;; ++done) {
+  while (waiting() > 0) {
     if (!shadows_.empty()) {
       traceShadows();
-    } else if (waitingRays_ > 0) {
-      std::size_t depth = raysByDepth_.size() - 1;
-      while (raysByDepth_[depth].empty()) --depth;
-      RayTask task = std::move(raysByDepth_[depth].back());
-      raysByDepth_[depth].pop_back();
-      --waitingRays_;
-      trace(task);
-    } else if (!primaries_.empty()) {
-      tracePrimary();
     } else {
-      return false;
+      batch_.clear();
+      if (waitingRays_ > 0) {
+        takeDeepest();
+      } else {
+        takePrimaries();
+      }
+      trace(batch_);
     }
-    if (done % kBetweenLooksAtTheClock == 0 && desk_.link.now() >= until) return waiting() > 0;
+    if (desk_.link.now() >= until) break;
   }
+  return waiting() > 0;
 }
 
-void VoxelTask::trace(RayTask& task) {
+// Rays of one depth, so that neighbours stay together.
+void VoxelTask::takeDeepest() {
+  std::size_t depth = raysByDepth_.size() - 1;
+  while (raysByDepth_[depth].empty()) --depth;
+  std::vector<RayTask>& rays = raysByDepth_[depth];
+  const std::size_t count = std::min(rays.size(), kBundleSize);
+  std::move(rays.end() - static_cast<std::ptrdiff_t>(count), rays.end(), std::back_inserter(batch_));
+  rays.resize(rays.size() - count);
+  waitingRays_ -= count;
+}
+
+void VoxelTask::takePrimaries() {
+  while (!primaries_.empty() && batch_.size() < kBundleSize) {
+    Primaries& primaries = primaries_.front();
+    batch_.push_back({primaryRay(exhibition_, worker_.at().exposure, primaries.work.samples[primaries.next]), 0,
+                      {host_, primaries.work.firstRecord + primaries.next, 0}});
+    if (++primaries.next == primaries.work.samples.size()) primaries_.pop_front();
+  }
+  waitingSamples_ -= batch_.size();
+  worker_.counts().primaryRays += batch_.size();
+}
+
+void VoxelTask::trace(std::span<RayTask> tasks) {
   const TraceSetting& at = worker_.at();
-  const Progress progress = followRay(at.tree, *model_, *this, task.ray, task.step, worker_.counts());
-  switch (progress.state) {
-    case Progress::State::hit:
-      worker_.shade(task.ray, task.to, progress.hit, *model_,
-                    [this](RayTask&& child) { queue(std::move(child)); });
-      break;
-    case Progress::State::left:
+  Patchwork::Found found[kBundleSize];
+  worker_.visit(tasks, found);
+  FoundHit hits[kBundleSize];
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    RayTask& task = tasks[i];
+    if (!found[i].settled) {
+      const LocalRay ray{task.ray.origin, task.ray.direction, 1};
+      if (const auto next = worker_.elsewhere(ray, found[i].hit.t, task.step)) {
+        desk_.outbox.post(at.ownerOf(next->where), task);
+        continue;
+      }
+      worker_.counts().hits += found[i].hit.found();
+    }
+    if (found[i].hit.found()) {
+      hits[count++] = {&task.ray, task.to, found[i].hit, found[i].model};
+    } else {
       worker_.answer(task.to, missed(task.ray, at.setting));
-      break;
-    case Progress::State::elsewhere:
-      task.step = progress.step;
-      desk_.outbox.post(at.ownerOf(progress.voxel), task);
-      break;
+    }
   }
+  worker_.shade(std::span(hits).first(count), [this](RayTask&& child) { queue(std::move(child)); });
 }
 
-void VoxelTask::tracePrimary() {
-  Primaries& primaries = primaries_.front();
-  RayTask task;
-  task.ray = primaryRay(exhibition_, worker_.at().exposure, primaries.work.samples[primaries.next]);
-  task.to = {host_, primaries.work.firstRecord + primaries.next, 0};
-  ++worker_.counts().primaryRays;
-  --waitingSamples_;
-  if (++primaries.next == primaries.work.samples.size()) primaries_.pop_front();
-  trace(task);
-}
-
+// Some of the shadow rays that came last.
 void VoxelTask::traceShadows() {
-  const Shadows shadows = shadows_.back();
-  shadows_.pop_back();
-  const std::size_t first = shadowRays_.size() - shadows.rays;
-  worker_.follow(shadows.head, std::span(shadowRays_).subspan(first), *model_, *this);
-  shadowRays_.resize(first);
+  std::size_t first = shadows_.size(), rays = 0;
+  while (first > 0 && rays < kBundleSize) rays += shadows_[--first].rays;
+  visitors_.clear();
+  std::size_t next = shadowRays_.size() - rays;
+  for (std::size_t i = first; i < shadows_.size(); ++i) {
+    visitors_.push_back({shadows_[i].head, std::span(shadowRays_).subspan(next, shadows_[i].rays)});
+    next += shadows_[i].rays;
+  }
+  worker_.follow(visitors_, *model_, *this);
+  shadows_.resize(first);
+  shadowRays_.resize(shadowRays_.size() - rays);
 }
 
 }  // namespace rayshade

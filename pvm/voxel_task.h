@@ -60,8 +60,9 @@ class VoxelTask : public VoxelSource, public OwnVoxels {
 
   void dropWork();
   void traceShadows();
-  void tracePrimary();
-  void trace(RayTask& task);
+  void takeDeepest();
+  void takePrimaries();
+  void trace(std::span<RayTask> tasks);  // kBundleSize of them at most
   void queue(RayTask&& task);
 
   TaskDesk desk_;
@@ -83,6 +84,8 @@ class VoxelTask : public VoxelSource, public OwnVoxels {
   std::uint64_t waitingRays_ = 0;
   std::vector<Shadows> shadows_;          // last in, first out
   std::vector<ShadowTravel> shadowRays_;  // of all of them, in the same order
+  std::vector<RayTask> batch_;            // being traced
+  std::vector<RayWorker::Visitors> visitors_;
 };
 
 }  // namespace rayshade

@@ -30,7 +30,7 @@ struct Intersection {
 
 // The colours that come back, each in its own place.
 struct Gathered {
-  InlineVector<Color, 8> light;  // by light point; what is let through, for those that were asked
+  InlineVector<Color, 4> light;  // by light point; what is let through, for those that were asked
   Color transmitted, reflected;
 };
 

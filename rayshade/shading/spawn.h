@@ -24,7 +24,7 @@ enum class Lit : std::uint8_t {
 
 // The points of all lights in one row, lights in the order of the file.
 using LightStates = InlineVector<Lit, 8>;
-using LightSamples = InlineVector<LightSample, 8>;
+using LightSamples = InlineVector<LightSample, 4>;
 
 // A shadow ray: from a hit to a point of a light.
 struct ShadowRay {
