@@ -192,6 +192,24 @@ void writeTaskTable(const std::string& file, const HostSummary& summary, std::ui
   if (!out.flush()) throw std::runtime_error(file + ": cannot be written");
 }
 
+// The first pass: how large the scene is, and what it uses.
+class FirstPass final : public SceneSink {
+ public:
+  void surface(SurfaceId id, const Surface& surface) override { features.surface(id, surface); }
+  void frame(FrameId id, Frame frame) override {
+    features.count(frame);
+    survey.frame(id, std::move(frame));
+  }
+  void object(SceneObject object) override {
+    features.count(object);
+    survey.object(std::move(object));
+  }
+  void settled() override { survey.settled(); }
+
+  SurveySink survey{{}};
+  FeatureSink features;
+};
+
 // The hosts that there would be; asks a virtual machine that runs, but changes and starts nothing.
 std::vector<HostInfo> plannedHosts(const MachineOptions& options) {
   std::vector<HostLine> lines;
@@ -212,17 +230,19 @@ std::vector<HostInfo> plannedHosts(const MachineOptions& options) {
 
 int run(HostProgramOptions& options) {
   // The first pass finds all that is wrong with the scene before anything is started.
-  SurveySink surveySink({});
-  SceneHead head = parseScene(options.render.parse, surveySink);
+  FirstPass pass;
+  SceneHead head = parseScene(options.render.parse, pass);
   applyOptions(options.render, head);
-  Survey survey = surveySink.survey();
+  Survey survey = pass.survey.survey();
   if (survey.objects == 0)
     throw SceneError(sceneName(options.render) + ": error: there is nothing to be rendered");
   const View view = *viewOf(head.camera, head.picture);
+  const Needs needs = needsOf(scenePlan(pass.features.features(), head), survey.objects);
   if (options.plan) {
     const std::vector<HostInfo> hosts = plannedHosts(options.machine);
     settleSchedule(options, static_cast<std::uint32_t>(hosts.size()));
-    std::fputs(describePlan(hosts, options.host, survey, {view, head.picture, head.setting}).c_str(), stdout);
+    std::fputs(describePlan(hosts, options.host, survey, {view, head.picture, head.setting}, needs).c_str(),
+               stdout);
     return 0;
   }
   const PixelArea area = *pixelArea(head.picture);
@@ -248,7 +268,9 @@ int run(HostProgramOptions& options) {
   options.host.seed = options.render.seed;
   options.host.killAfter = options.patience;
   options.host.pingAfter = options.patience / 3;
-  settleSchedule(options, static_cast<std::uint32_t>(link.hosts().size()));
+  const std::size_t hosts = link.hosts().size();
+  settleSchedule(options, static_cast<std::uint32_t>(hosts));
+  options.host.wishes = neededTasks(needs, options.host, hosts).wishes;
   HostTask host(
       link, [&](SceneSink& sink) { parseScene(again, sink); }, survey, head.setting, options.host);
   Picture sum{area.width, area.height, {}};

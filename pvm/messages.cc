@@ -8,7 +8,7 @@ namespace rayshade {
 
 bool isComplete(const Directory& d, const BinTree& tree) {
   if (d.clusters == 0 || d.voxelTasks.empty() || d.voxelTasks.size() % d.clusters != 0) return false;
-  if (d.voxels.size() != voxelCount(tree) || d.shadeTasks.empty()) return false;
+  if (d.voxels.size() != voxelCount(tree)) return false;
   if (d.shadeWeights.size() != d.shadeTasks.size()) return false;
   return std::all_of(d.voxels.begin(), d.voxels.end(),
                      [&](std::uint32_t task) { return task < d.tasksPerCluster(); });
@@ -16,12 +16,14 @@ bool isComplete(const Directory& d, const BinTree& tree) {
 
 bool isComplete(const Configure& message) {
   const std::size_t cells = cellCount(message.tree);
-  return isComplete(message.directory, message.tree) && message.cellBytes.size() == cells &&
-         message.cellContents.size() == cells && message.policy.outstanding > 0;
+  return isComplete(message.directory, message.tree) &&
+         (!message.directory.shadeTasks.empty() || message.policy.shadeAtOnce) &&
+         message.cellBytes.size() == cells && message.cellContents.size() == cells &&
+         message.policy.outstanding > 0;
 }
 
 std::size_t chooseShadeTask(const Directory& directory, std::uint64_t serial) {
-  if (directory.shadeTasks.size() == 1) return 0;
+  if (directory.shadeTasks.size() <= 1) return 0;
   std::uint64_t sum = 0;
   for (std::uint32_t weight : directory.shadeWeights) sum += weight;
   if (sum == 0) return serial % directory.shadeTasks.size();

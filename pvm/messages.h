@@ -67,7 +67,8 @@ bool isComplete(const Directory& directory, const BinTree& tree);
 struct Configure;
 bool isComplete(const Configure& message);
 
-// Which shade task gets an intersection, the `serial`-th that a task finds: any choice gives the same picture.
+// Which shade task gets an intersection, the `serial`-th that a task finds: any choice gives the same picture.  Requires
+// that there are any.
 std::size_t chooseShadeTask(const Directory& directory, std::uint64_t serial);
 
 // How work is shared out between rays that travel and objects that do.

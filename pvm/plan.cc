@@ -83,8 +83,10 @@ std::vector<HostInfo> hostsAfterJoining(std::vector<HostInfo> running, const std
   return running;
 }
 
-std::string describePlan(const std::vector<HostInfo>& hosts, const HostOptions& options, Survey survey,
-                         const Sight& sight) {
+std::string describePlan(const std::vector<HostInfo>& hosts, HostOptions options, Survey survey,
+                         const Sight& sight, const Needs& needs) {
+  NeededTasks needed = neededTasks(needs, options, hosts.size());
+  options.wishes = needed.wishes;
   const std::vector<Placement> placements = mapProcesses(hosts, options.wishes);
   const auto voxelTasks = static_cast<std::uint32_t>(std::count_if(
       placements.begin(), placements.end(), [](const Placement& p) { return p.role == Role::voxelTrace; }));
@@ -113,6 +115,7 @@ std::string describePlan(const std::vector<HostInfo>& hosts, const HostOptions& 
         p.role == Role::voxelTrace ? "~" + std::to_string(objects[p.index % perCluster]) : "-";
     add(text, "%-21s %-16s %9s  %s\n", name.c_str(), p.host.c_str(), held.c_str(), p.reason.c_str());
   }
+  for (const std::string& less : needed.why) add(text, "%s\n", less.c_str());
 
   // Work in parts of a voxel task's, for a machine of usual speed.
   add(text, "\n%-21s %-16s %9s  %s\n", "host", "speed", "tasks", "expected work for its speed");

@@ -9,6 +9,7 @@
 
 #include "pvm/division.h"
 #include "pvm/host_file.h"
+#include "pvm/needs.h"
 
 namespace rayshade {
 
@@ -18,9 +19,9 @@ std::vector<HostInfo> hostsAfterJoining(std::vector<HostInfo> running, const std
                                         const std::function<bool(const std::string&)>& isThisMachine,
                                         const std::string& ownName);
 
-// Lines of text: hosts, what travels, how space is divided, and the tasks with the reason for each.
-// `survey`: of the first frame.
-std::string describePlan(const std::vector<HostInfo>& hosts, const HostOptions& options, Survey survey,
-                         const Sight& sight);
+// Lines of text: hosts, what travels, how space is divided, and the tasks with the reason for each, and for those that are
+// not started.  `survey`: of the first frame.
+std::string describePlan(const std::vector<HostInfo>& hosts, HostOptions options, Survey survey,
+                         const Sight& sight, const Needs& needs);
 
 }  // namespace rayshade

@@ -20,6 +20,11 @@ double expectedWork(Role role) {
   return 0;
 }
 
+std::uint32_t voxelTasksPerCluster(const Wishes& wishes, std::size_t hosts) {
+  if (wishes.voxels > 0) return wishes.voxels;
+  return std::max(1u, 2 * static_cast<std::uint32_t>(hosts) / std::max(1u, wishes.clusters));
+}
+
 std::vector<Placement> mapProcesses(const std::vector<HostInfo>& hosts, const Wishes& wishes) {
   const double pyramidWork = expectedWork(Role::pyramidTrace);
   std::vector<double> work(hosts.size(), 0.0);
@@ -32,11 +37,8 @@ std::vector<Placement> mapProcesses(const std::vector<HostInfo>& hosts, const Wi
     work[best] += more;
     return best;
   };
-  const std::uint32_t clusters = std::max(1u, wishes.clusters);
-  const auto hostCount = static_cast<std::uint32_t>(hosts.size());
-  const std::uint32_t voxels =
-      clusters * (wishes.voxels > 0 ? wishes.voxels : std::max(1u, 2 * hostCount / clusters));
-  const std::uint32_t shades = wishes.shades > 0 ? wishes.shades : std::max(1u, voxels / 4);
+  const std::uint32_t voxels = std::max(1u, wishes.clusters) * voxelTasksPerCluster(wishes, hosts.size());
+  const std::uint32_t shades = wishes.shades.value_or(std::max(1u, voxels / 4));
   std::vector<Placement> placements;
   for (std::uint32_t i = 0; i < voxels; ++i) {
     placements.push_back({Role::voxelTrace, i, hosts[leastLoaded(expectedWork(Role::voxelTrace))].name,

@@ -10,6 +10,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
+
 #include "pvm/link.h"
 
 namespace rayshade {
@@ -17,7 +19,8 @@ namespace rayshade {
 struct Wishes {
   std::uint32_t voxels = 0;  // voxel-trace tasks of each cluster; 0: two per host, shared among the clusters
   std::uint32_t pyramids = 0;  // pyramid-trace tasks
-  std::uint32_t shades = 0;    // shade tasks; 0: one per four voxel-trace tasks, at least one
+  std::optional<std::uint32_t>
+      shades{};                // shade tasks; nothing: one per four voxel-trace tasks, at least one
   std::uint32_t clusters = 1;  // copies of the model
 };
 
@@ -30,6 +33,9 @@ struct Placement {
 
 // Work of a task of this role in parts of a voxel-trace task's, before anything is known of the scene.
 double expectedWork(Role role);
+
+// Voxel-trace tasks of each cluster, when there are so many hosts.
+std::uint32_t voxelTasksPerCluster(const Wishes& wishes, std::size_t hosts);
 
 // Requires at least one host.
 std::vector<Placement> mapProcesses(const std::vector<HostInfo>& hosts, const Wishes& wishes);

@@ -76,8 +76,8 @@ class PyramidTask : public GroundSource {
   std::list<Tile> tiles_;                                                                   // all of them
   std::deque<std::list<Tile>::iterator> ready_;                                             // with all cells
   std::unordered_map<std::uint32_t, std::vector<std::list<Tile>::iterator>> waitingTiles_;  // by cell
-  std::vector<RayTask> secondaries_;  // to be traced, last in first out
-  std::vector<RayTask> batch_;        // being traced
+  std::vector<RayTask> secondaries_;                                   // to be traced, last in first out
+  std::vector<RayTask> batch_;                                         // being traced
   std::unordered_map<std::uint32_t, std::vector<WaitingRay>> parked_;  // by cell
   std::uint64_t pyramids_ = 0, pyramidRays_ = 0, forwarded_ = 0;
 };

@@ -16,9 +16,9 @@ constexpr double kExpectedUses = 64;
 
 void RayWorker::begin(Configure&& message, std::uint32_t cluster, std::uint32_t finder) {
   Contents contents(message.tree, message.cellContents);
-  at_ = {std::move(message.setting),   std::move(message.tree), std::move(message.directory), cluster,
-         message.exposure,             message.policy,          std::move(message.cellBytes),
-         std::move(contents)};
+  at_ = {
+      std::move(message.setting), std::move(message.tree), std::move(message.directory), cluster,
+      message.exposure,           message.policy,          std::move(message.cellBytes), std::move(contents)};
   finder_ = finder;
   numbers_.assign(at_.directory.shadeTasks.size(), 0);
   occluders_.assign(lightPointCount(at_.setting), {});
@@ -84,12 +84,14 @@ void RayWorker::visit(std::span<const RayTask> rays, std::span<Patchwork::Found>
   }
 }
 
-std::optional<WalkStep<VoxelId>> RayWorker::elsewhere(const LocalRay& ray, double t, std::uint32_t& step) const {
+std::optional<WalkStep<VoxelId>> RayWorker::elsewhere(const LocalRay& ray, double t,
+                                                      std::uint32_t& step) const {
   VoxelWalk walk(at_.tree, ray.origin, ray.direction);
   WalkStep<VoxelId> at;
   for (std::uint32_t i = 0; walk.next(at) && at.tEnter <= t; ++i) {
     if (i < step || at_.ownerOf(at.where) == desk_.link.self()) continue;
-    if (!at_.contents.mayMeet(at.where, ray.origin, ray.direction, at.tEnter, std::min(at.tExit, t))) continue;
+    if (!at_.contents.mayMeet(at.where, ray.origin, ray.direction, at.tEnter, std::min(at.tExit, t)))
+      continue;
     step = i;
     return at;
   }
@@ -113,8 +115,8 @@ void RayWorker::askLight(std::span<const FoundHit> hits, std::size_t point) {
   for (std::size_t i = 0; i < hits.size(); ++i) {
     if (shadings_[i].spawned.lit[point] != Lit::asked) continue;
     const LightSample& sample = shadings_[i].spawned.samples[point];
-    segments[count] = {originOff(shadings_[i].at, sample.shadowToward), sample.shadowToward, sample.shadowDistance,
-                       hits[i].ray->moment};
+    segments[count] = {originOff(shadings_[i].at, sample.shadowToward), sample.shadowToward,
+                       sample.shadowDistance, hits[i].ray->moment};
     from[count++] = i;
   }
   if (count == 0) return;
@@ -133,8 +135,8 @@ void RayWorker::askLight(std::span<const FoundHit> hits, std::size_t point) {
       LocalProgress missing;
       if (const auto next = elsewhere(segments[k].ray, segments[k].tMax, missing.step)) {
         missing.voxel = next->where;
-        shading.pending.push_back({shadowRay(*hits[from[k]].ray, shading.at, shading.spawned.samples[point]), 0,
-                                   static_cast<Slot>(point), missing});
+        shading.pending.push_back({shadowRay(*hits[from[k]].ray, shading.at, shading.spawned.samples[point]),
+                                   0, static_cast<Slot>(point), missing});
       } else {
         through = kWhite;
       }
@@ -155,29 +157,35 @@ void RayWorker::askLight(std::span<const FoundHit> hits, std::size_t point) {
   }
 }
 
-// Tells a shade task of an intersection, and says where the colours of its secondary rays go; or shades it.
-ReplyTo RayWorker::conclude(const FoundHit& found, Shading& shading) {
+// Tells a shade task of an intersection, and says where the colours of its secondary rays go, if there are any; or
+// shades it.
+std::optional<ReplyTo> RayWorker::conclude(const FoundHit& found, Shading& shading) {
   const Secondary& spawned = shading.spawned;
-  const std::size_t chosen = chooseShadeTask(at_.directory, serial_++);
-  const TaskId shader = at_.directory.shadeTasks[chosen];
-  const RecordId record = recordOf(finder_, numbers_[chosen]);
   const Ray& ray = *found.ray;
   const bool complete = shading.pending.empty() && !spawned.transmitted && !spawned.reflected;
   expect_.hit = describe(ray, found.hit.t, shading.at, spawned, at_.setting);
   if (complete && at_.policy.shadeAtOnce) {
     ++combined_;
     answer(found.to, combine(expect_.hit, shading.gathered, at_.setting, spawned.samples));
-    return {};
+    return std::nullopt;
   }
-  if (!complete) ++numbers_[chosen];
+  if (at_.directory.shadeTasks.empty()) {  // the host's mistake
+    ++desk_.outbox.traffic.refused;
+    return std::nullopt;
+  }
+  const std::size_t chosen = chooseShadeTask(at_.directory, serial_++);
+  const TaskId shader = at_.directory.shadeTasks[chosen];
+  const RecordId record = recordOf(finder_, numbers_[chosen]);
   expect_.record = record;
   expect_.to = found.to;
   expect_.gathered = shading.gathered;
   expect_.pending.clear();
   for (const Pending& pending : shading.pending) expect_.pending.push_back(pending.slot);
   desk_.outbox.post(shader, expect_);
+  if (complete) return std::nullopt;
+  ++numbers_[chosen];
   if (!shading.pending.empty()) sendOn({shader, record, ray.moment, ray.sample, ray.key}, shading.pending);
-  return {shader, record, 0};
+  return ReplyTo{shader, record, 0};
 }
 
 // Shadow rays of one intersection that miss something: to the tasks that have it, or into waiting until it is here.
@@ -235,8 +243,8 @@ void RayWorker::follow(std::span<const Visitors> visitors, const Model& model, c
   const auto look = [&] {
     const std::size_t known = visitorLight_.size();
     visitorLight_.resize(known + count);
-    patchwork_.obstruct(*this, std::span(segments).first(count), begin, std::span(visitorLight_).subspan(known),
-                        counts_);
+    patchwork_.obstruct(*this, std::span(segments).first(count), begin,
+                        std::span(visitorLight_).subspan(known), counts_);
     count = 0;
   };
   for (const Visitors& some : visitors) {
@@ -270,7 +278,8 @@ void RayWorker::follow(std::span<const Visitors> visitors, const Model& model, c
         continue;
       }
       ShadowRay shadow = shadowOf(some.head, travel);
-      const Progress progress = followShadow(at_.tree, model, voxels, shadow, travel.step, at_.setting, counts_);
+      const Progress progress =
+          followShadow(at_.tree, model, voxels, shadow, travel.step, at_.setting, counts_);
       if (progress.state == Progress::State::elsewhere) {
         onward_.add(at_.ownerOf(progress.voxel), travelOf(shadow, travel.slot, progress.step));
       } else {
@@ -289,7 +298,8 @@ void RayWorker::sendOn(const ShadowHead& head, std::span<Pending> pending, const
   const bool fetch = at_.policy.shadows == ShadowPolicy::local ||
                      (at_.policy.shadows == ShadowPolicy::automatic && fetchingPays(missing, pending.size()));
   if (fetch) {
-    park({head, {std::make_move_iterator(pending.begin()), std::make_move_iterator(pending.end())}}, missing, &light);
+    park({head, {std::make_move_iterator(pending.begin()), std::make_move_iterator(pending.end())}}, missing,
+         &light);
     return;
   }
   for (const Pending& p : pending)

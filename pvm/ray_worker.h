@@ -1,7 +1,7 @@
 // What voxel-trace and pyramid-trace tasks have in common: shading a hit, and shadow rays that are traced where they were
 // spawned.
 //
-// Rays are traced in bundles (rayshade/space/patchwork.h); what a bundle cannot settle goes on ray by ray.
+// Rays are traced in bundles (rayshade/patchwork.h); what a bundle cannot settle goes on ray by ray.
 //
 // At a hit the secondary rays are spawned and a shade task is told.  Shadow rays are followed as far as the voxels of this
 // task go; what comes after is decided by the policy: `forward` sends them to the next voxel's task, `local` fetches the
@@ -17,10 +17,10 @@
 #include <unordered_set>
 
 #include "pvm/task_desk.h"
+#include "rayshade/patchwork.h"
 #include "rayshade/shading/evaluate.h"
 #include "rayshade/space/clip_list.h"
 #include "rayshade/space/contents.h"
-#include "rayshade/space/patchwork.h"
 
 namespace rayshade {
 
@@ -177,7 +177,7 @@ class RayWorker : public GroundSource, public PatchSource {
   // The three parts of shade().
   void lookAt(std::span<const FoundHit> hits);
   void askLight(std::span<const FoundHit> hits, std::size_t point);
-  ReplyTo conclude(const FoundHit& hit, Shading& shading);
+  std::optional<ReplyTo> conclude(const FoundHit& hit, Shading& shading);
   void sendOn(const ShadowHead& head, std::span<Pending> pending);
   void sendOn(const ShadowHead& head, std::span<Pending> pending, const LightSource& light);
   void park(Bundle&& bundle, CellId missing, const LightSource* light);
@@ -201,7 +201,7 @@ class RayWorker : public GroundSource, public PatchSource {
   Patchwork patchwork_;
   std::array<Shading, kBundleSize> shadings_;  // kept: they take memory
   Model noModel_;
-  Region nothing_;                             // of an empty cell
+  Region nothing_;                   // of an empty cell
   std::vector<Occluder> occluders_;  // by light point
   Onward onward_;
   LightAnswers settled_;
@@ -226,15 +226,16 @@ void RayWorker::shade(std::span<const FoundHit> hits, Queue queue) {
   const std::size_t points = lightPointCount(at_.setting);
   for (std::size_t point = 0; point < points; ++point) askLight(hits, point);
   for (std::size_t i = 0; i < hits.size(); ++i) {
-    const ReplyTo back = conclude(hits[i], shadings_[i]);
+    const std::optional<ReplyTo> back = conclude(hits[i], shadings_[i]);
+    if (!back) continue;
     OnwardRays& onward = shadings_[i].spawned;
     if (onward.transmitted) {
       ++counts_.transmittedRays;
-      queue(RayTask{std::move(*onward.transmitted), 0, {back.task, back.record, kTransmittedSlot}});
+      queue(RayTask{std::move(*onward.transmitted), 0, {back->task, back->record, kTransmittedSlot}});
     }
     if (onward.reflected) {
       ++counts_.reflectedRays;
-      queue(RayTask{std::move(*onward.reflected), 0, {back.task, back.record, kReflectedSlot}});
+      queue(RayTask{std::move(*onward.reflected), 0, {back->task, back->record, kReflectedSlot}});
     }
   }
 }

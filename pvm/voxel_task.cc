@@ -203,7 +203,8 @@ void VoxelTask::takeDeepest() {
 void VoxelTask::takePrimaries() {
   while (!primaries_.empty() && batch_.size() < kBundleSize) {
     Primaries& primaries = primaries_.front();
-    batch_.push_back({primaryRay(exhibition_, worker_.at().exposure, primaries.work.samples[primaries.next]), 0,
+    batch_.push_back({primaryRay(exhibition_, worker_.at().exposure, primaries.work.samples[primaries.next]),
+                      0,
                       {host_, primaries.work.firstRecord + primaries.next, 0}});
     if (++primaries.next == primaries.work.samples.size()) primaries_.pop_front();
   }

@@ -40,7 +40,7 @@ void FeatureSink::surface(SurfaceId, const Surface& surface) {
   features_.shadowTransparent += surface.transparency >= kNegligible ? 1 : 0;
 }
 
-void FeatureSink::frame(FrameId, Frame frame) {
+void FeatureSink::count(const Frame& frame) {
   features_.transforms += frame.transforms.empty() ? 0 : 1;
   features_.moving += frame.transforms.moves() ? 1 : 0;
   for (const PlacedTexture& placed : frame.textures) {
@@ -56,7 +56,7 @@ void FeatureSink::frame(FrameId, Frame frame) {
   }
 }
 
-void FeatureSink::object(SceneObject object) {
+void FeatureSink::count(const SceneObject& object) {
   if (const AnyShape* shape = std::get_if<AnyShape>(&object.body)) {
     ++features_.shapes[shape->index()];
     features_.unbounded += std::visit([](const auto& s) { return s.bounds().finite() ? 0 : 1; }, *shape);

@@ -34,9 +34,13 @@ struct SceneFeatures {
 class FeatureSink : public SceneSink {
  public:
   void surface(SurfaceId id, const Surface& surface) override;
-  void frame(FrameId id, Frame frame) override;
-  void object(SceneObject object) override;
+  void frame(FrameId, Frame frame) override { count(frame); }
+  void object(SceneObject object) override { count(object); }
   void settled() override {}
+
+  // For those who give them to somebody else, too.
+  void count(const Frame& frame);
+  void count(const SceneObject& object);
 
   const SceneFeatures& features() const { return features_; }
 

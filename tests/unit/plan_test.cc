@@ -58,7 +58,10 @@ Surveyed surveyOf(const std::string& scene) {
 }
 std::string planOf(const std::string& scene, const std::vector<HostInfo>& hosts, const HostOptions& options) {
   const Surveyed s = surveyOf(scene);
-  return describePlan(hosts, options, s.survey, s.sight());
+  FeatureSink features;
+  jobOfText(scene).read(features);
+  const Needs needs = needsOf(scenePlan(features.features(), s.head), s.survey.objects);
+  return describePlan(hosts, options, s.survey, s.sight(), needs);
 }
 std::vector<std::string> lines(const std::string& text) {
   std::vector<std::string> all;
@@ -70,7 +73,7 @@ std::vector<std::string> lines(const std::string& text) {
 TEST(Plan, NamesEveryTaskWithTheHostAndReasonOfTheMapping) {
   const std::vector<HostInfo> hosts{{"here", 1000}, {"fast", 3000}, {"slow", 500}};
   HostOptions options;
-  options.wishes = {.voxels = 7, .pyramids = 3, .shades = 2, .clusters = 1};
+  options.wishes = {.voxels = 7, .pyramids = 2, .shades = 2, .clusters = 1};
   const std::vector<std::string> plan = lines(planOf(randomScene(1), hosts, options));
   const std::vector<Placement> placements = mapProcesses(hosts, options.wishes);
   const auto begin = std::find_if(plan.begin(), plan.end(),

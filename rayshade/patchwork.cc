@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "rayshade/space/patchwork.h"
+#include "rayshade/patchwork.h"
 
 #include "rayshade/space/bvh_bundle.h"
 
@@ -82,7 +82,8 @@ void Patchwork::visit(PatchSource& source, std::span<Segment> segments, std::spa
       Part part(segments, asking);
       // What was found elsewhere at the same t may have to give way.
       for (std::size_t k = 0; k < part.size; ++k)
-        if (found[part.from[k]].hit.found()) part.segments[k].tMax = std::nextafter(part.segments[k].tMax, kInfinity);
+        if (found[part.from[k]].hit.found())
+          part.segments[k].tMax = std::nextafter(part.segments[k].tMax, kInfinity);
       Hit hits[kBundleSize];
       visitTogether(*ground.model, *ground.region, part.rays(), hits);
       counts.visits += part.size;
