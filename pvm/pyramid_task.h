@@ -15,6 +15,7 @@ namespace rayshade {
 
 class PyramidTask : public GroundSource {
  public:
+  static constexpr double kGather = 0;  // pyramids are waited for
   using Accepted = TypeList<Configure, Finish, Ping, Weights, PrimaryRays, CellItems>;
   static constexpr int kAhead =
       4;  // pyramids asked for at a time: some are traced while others wait for cells

@@ -15,6 +15,7 @@ namespace rayshade {
 
 class VoxelTask : public VoxelSource, public OwnVoxels {
  public:
+  static constexpr double kGather = 0;  // rays are waited for
   using Accepted = TypeList<Forget, Items, Configure, Finish, Ping, Weights, PrimaryRays, RayTask, ShadowTask,
                             CellWanted, CellItems>;
 
