@@ -295,9 +295,16 @@ void HostTask::on(TaskId from, Report message) {
 
 void HostTask::on(TaskId, Pong) {}
 
-void HostTask::on(TaskId, Answer message) {
-  const std::optional<SampleId> sample = inFlight_.take(message.record);
-  if (sample && sampler_ != nullptr) sampler_->supply(*sample, message.color);
+void HostTask::on(TaskId, Answer message) { arrive(message.record, message.color); }
+
+void HostTask::on(TaskId, const SampleColors& message) {
+  RecordId record = message.first;
+  for (const Color& color : message.colors) arrive(record++, color);
+}
+
+void HostTask::arrive(RecordId record, Color color) {
+  const std::optional<SampleId> sample = inFlight_.take(record);
+  if (sample && sampler_ != nullptr) sampler_->supply(*sample, color);
 }
 
 void HostTask::on(TaskId from, PyramidWanted) { wanting_.push_back(from); }

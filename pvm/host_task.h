@@ -75,7 +75,7 @@ struct HostSummary {
 
 class HostTask {
  public:
-  using Accepted = TypeList<ItemsTaken, Ready, Report, Pong, Load, Answer, PyramidWanted>;
+  using Accepted = TypeList<ItemsTaken, Ready, Report, Pong, Load, Answer, SampleColors, PyramidWanted>;
   // Reads the scene once more, from the beginning, into a sink.
   using SceneReader = std::function<void(SceneSink&)>;
   struct Progress {
@@ -100,6 +100,7 @@ class HostTask {
   void on(TaskId from, Report message);
   void on(TaskId from, Pong);
   void on(TaskId from, Answer message);
+  void on(TaskId from, const SampleColors& message);
   void on(TaskId from, PyramidWanted);
   void on(TaskId from, Load message);
 
@@ -121,6 +122,7 @@ class HostTask {
   void surveyAgain();
   void placeTasks();
   void reconfigure();
+  void arrive(RecordId record, Color color);
   bool startMissing();
   void ship();
   bool configure();

@@ -281,12 +281,19 @@ struct Answer {
   Color color;
 };
 
-// Append only: the position is the tag.
-using AllMessages =
-    TypeList<Forget, Items, ItemsTaken, Configure, Ready, Finish, Report, Ping, Pong, RayTask, ShadowTask,
-             Expect, Answer, PyramidWanted, PrimaryRays, CellWanted, CellItems, Load, Weights, LightAnswers>;
+// The same for samples, to the host: the colour of record first + i for each i.
+struct SampleColors {
+  static constexpr bool isFact = false;
+  RecordId first = 0;
+  std::vector<Color> colors;
+};
 
-inline constexpr std::uint8_t kWireVersion = 2;
+// Append only: the position is the tag.
+using AllMessages = TypeList<Forget, Items, ItemsTaken, Configure, Ready, Finish, Report, Ping, Pong, RayTask,
+                             ShadowTask, Expect, Answer, PyramidWanted, PrimaryRays, CellWanted, CellItems,
+                             Load, Weights, LightAnswers, SampleColors>;
+
+inline constexpr std::uint8_t kWireVersion = 3;
 
 // Does this machine compute the same bits as another?  A hash over results of the library functions that the pictures
 // depend on: their last bits differ between processors on which glibc chooses different code.
@@ -404,9 +411,28 @@ void serialize(Archive& archive, Expect& m) {
 }
 template <class Archive>
 void serialize(Archive&, PyramidWanted&) {}
+// Samples are given row by row of small blocks: most are the right neighbour of the one before.
 template <class Archive>
 void serialize(Archive& archive, PrimaryRays& m) {
-  archive(m.firstRecord, m.samples);
+  auto size = static_cast<std::uint32_t>(m.samples.size());
+  archive(m.firstRecord, size);
+  if constexpr (Archive::kReading) {
+    if (size > archive.left()) return archive.fail();
+    m.samples.resize(size);
+  }
+  SampleId expected{0, 0, 0};
+  for (SampleId& sample : m.samples) {
+    bool neighbour = false;
+    if constexpr (!Archive::kReading) neighbour = sample == expected;
+    archive(neighbour);
+    if (neighbour) {
+      sample = expected;
+    } else {
+      archive(sample);
+    }
+    expected = sample;
+    if (expected.x < std::numeric_limits<std::int32_t>::max()) ++expected.x;
+  }
 }
 template <class Archive>
 void serialize(Archive& archive, CellWanted& m) {
@@ -423,6 +449,28 @@ void serialize(Archive& archive, Load& m) {
 template <class Archive>
 void serialize(Archive& archive, Weights& m) {
   archive(m.epoch, m.shadeWeights);
+}
+// Where nothing is there is the background, over and over.
+template <class Archive>
+void serialize(Archive& archive, SampleColors& m) {
+  auto size = static_cast<std::uint32_t>(m.colors.size());
+  archive(m.first, size);
+  if constexpr (Archive::kReading) {
+    if (size > archive.left()) return archive.fail();
+    m.colors.resize(size);
+  }
+  Color before = kBlack;
+  for (Color& color : m.colors) {
+    bool again = false;
+    if constexpr (!Archive::kReading) again = sameBits(color, before);
+    archive(again);
+    if (again) {
+      color = before;
+    } else {
+      archive(color);
+    }
+    before = color;
+  }
 }
 template <class Archive>
 void serialize(Archive& archive, Answer& m) {

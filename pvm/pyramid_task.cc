@@ -33,7 +33,7 @@ void PyramidTask::on(TaskId from, Configure message) {
   const std::uint32_t clusters = message.directory.clusters;
   const auto base = static_cast<std::uint32_t>(message.directory.voxelTasks.size()) + message.number;
   const std::uint32_t cluster = message.number % clusters;
-  worker_.begin(std::move(message), cluster, base);
+  worker_.begin(from, std::move(message), cluster, base);
   desk_.link.connect(worker_.at().directory.voxelTasks);
   desk_.link.connect(worker_.at().directory.shadeTasks);
   desk_.outbox.post(from, Ready{desk_.epoch, arithmeticFingerprint(), 0, 0, 0});

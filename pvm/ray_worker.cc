@@ -14,7 +14,9 @@ constexpr double kExpectedUses = 64;
 
 }  // namespace
 
-void RayWorker::begin(Configure&& message, std::uint32_t cluster, std::uint32_t finder) {
+void RayWorker::begin(TaskId host, Configure&& message, std::uint32_t cluster, std::uint32_t finder) {
+  host_ = host;
+  home_.clear();
   Contents contents(message.tree, message.cellContents);
   at_ = {
       std::move(message.setting), std::move(message.tree), std::move(message.directory), cluster,
@@ -56,6 +58,23 @@ void RayWorker::layPatches(std::span<const Bounds> cellContents) {
     }
   }
   patchwork_ = Patchwork(std::move(boxes));
+}
+
+// In runs of records that follow each other, as they do in a pyramid.
+void RayWorker::sendHome() {
+  std::sort(home_.begin(), home_.end(),
+            [](const SampleColor& a, const SampleColor& b) { return a.record < b.record; });
+  SampleColors message;
+  for (const SampleColor& sample : home_) {
+    if (!message.colors.empty() && sample.record != message.first + message.colors.size()) {
+      desk_.outbox.post(host_, message);
+      message.colors.clear();
+    }
+    if (message.colors.empty()) message.first = sample.record;
+    message.colors.push_back(sample.color);
+  }
+  if (!message.colors.empty()) desk_.outbox.post(host_, message);
+  home_.clear();
 }
 
 Ground RayWorker::patch(std::uint32_t number, std::size_t rays) {

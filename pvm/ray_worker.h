@@ -93,7 +93,7 @@ class RayWorker : public GroundSource, public PatchSource {
   RayWorker(TaskDesk& desk, const OwnVoxels* own) : desk_(desk), own_(own) {}
 
   // A new epoch: everything that waits is dropped.  `finder`: this task's number among those that find intersections.
-  void begin(Configure&& message, std::uint32_t cluster, std::uint32_t finder);
+  void begin(TaskId host, Configure&& message, std::uint32_t cluster, std::uint32_t finder);
 
   void setWeights(std::vector<std::uint32_t> weights) {
     if (weights.size() == at_.directory.shadeTasks.size()) at_.directory.shadeWeights = std::move(weights);
@@ -115,8 +115,18 @@ class RayWorker : public GroundSource, public PatchSource {
   template <class Queue>
   void shade(std::span<const FoundHit> hits, Queue queue);
 
+  // The colour of a ray; those of samples gather until flush().
   void answer(const ReplyTo& to, Color color) {
-    desk_.outbox.post(to.task, Answer{to.record, to.slot, color});
+    if (to.task != host_) {
+      desk_.outbox.post(to.task, Answer{to.record, to.slot, color});
+      return;
+    }
+    home_.push_back({to.record, color});
+    if (home_.size() == kMostHome) sendHome();
+  }
+  void flush() {
+    sendHome();
+    desk_.flush();
   }
 
   // Shadow rays of one intersection that have come from elsewhere.
@@ -184,8 +194,17 @@ class RayWorker : public GroundSource, public PatchSource {
   void resume(Bundle&& bundle);
   void askMore();
 
+  static constexpr std::size_t kMostHome = 512;
+  struct SampleColor {
+    RecordId record;
+    Color color;
+  };
+  void sendHome();
+
   TaskDesk& desk_;
   const OwnVoxels* own_;
+  TaskId host_ = kNobody;
+  std::vector<SampleColor> home_;
   TraceSetting at_;
   TraceCounts counts_;
   CacheCounts shadowCounts_;

@@ -45,7 +45,7 @@ void VoxelTask::on(TaskId from, Configure message) {
   exhibition_ = message.exhibition;
   number_ = message.number % directory.tasksPerCluster();
   const std::uint32_t number = message.number, cluster = number / directory.tasksPerCluster();
-  worker_.begin(std::move(message), cluster, number);
+  worker_.begin(from, std::move(message), cluster, number);
   desk_.link.connect(worker_.at().directory.voxelTasks);
   desk_.link.connect(worker_.at().directory.shadeTasks);
   desk_.link.connect(worker_.at().directory.pyramidTasks);

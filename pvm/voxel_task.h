@@ -24,7 +24,7 @@ class VoxelTask : public VoxelSource, public OwnVoxels {
   // The life in event_loop.h.
   void receive(const LinkEvent& event) { receiveEvent(*this, desk_, event); }
   bool work(double until);
-  void flush() { desk_.flush(); }
+  void flush() { worker_.flush(); }
   bool finished() const { return desk_.finished; }
   void noteIdle(double seconds) { desk_.idleSeconds += seconds; }
 

@@ -188,8 +188,9 @@ class Tracer {
       for (std::size_t k = 0; k < count; ++k) {
         const std::size_t i = from[k];
         ShadowRay shadow = shadowRay(*shaded[i].ray, shaded[i].point, samples[i]);
-        const bool dark = followShadow(scene_.tree, scene_.model, scene_, shadow, 0, setting_, counts_).state ==
-                          Progress::State::hit;
+        const bool dark =
+            followShadow(scene_.tree, scene_.model, scene_, shadow, 0, setting_, counts_).state ==
+            Progress::State::hit;
         through[i] = dark ? kBlack : shadow.through;
       }
     }

@@ -83,8 +83,7 @@ SurfacePoint evaluateSurface(const Model& model, const Hit& hit, const Ray& ray,
     return evaluateSurface(model, hit, pathTo(model, ray, hit), ray, setting);
   // The ordinary case, a shape of the world as it is: the same answers as below without a path.
   const LocalRay local{ray.origin, ray.direction, 1};
-  ShapePoint point =
-      withShape(store, object, [&](const auto& body) { return body.pointAt(local, hit.t); });
+  ShapePoint point = withShape(store, object, [&](const auto& body) { return body.pointAt(local, hit.t); });
   SurfacePoint at;
   at.smooth = point.normal != point.geometricNormal;
   at.entering = turnToViewer(point, ray.direction);

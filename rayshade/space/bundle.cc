@@ -61,9 +61,8 @@ void visitTogether(const Model& model, const Region& region, std::span<Segment> 
         ++best.tests;
         if (!(t <= segments[i].tMax) || t == kNoHit) return;
         // At the end of a segment nothing counts but what was found there already.
-        if (t == segments[i].tMax &&
-            (!best.found() || precedence(model.store().object(target.object)) >=
-                                  precedence(model.store().object(best.object))))
+        if (t == segments[i].tMax && (!best.found() || precedence(model.store().object(target.object)) >=
+                                                           precedence(model.store().object(best.object))))
           return;
         best.t = t;
         best.object = target.object;

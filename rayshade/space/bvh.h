@@ -87,7 +87,8 @@ class Bvh {
   // and farther origins see every item.
   static constexpr double kLargest = 0x1p+500;
   static constexpr double kSmallest = 0x1p-500;
-  static constexpr double kFarthest = 0x1p+100;  // in the tree's coordinates: 2^100 times the size of the scene
+  static constexpr double kFarthest =
+      0x1p+100;  // in the tree's coordinates: 2^100 times the size of the scene
 
   // A reference to a child: the number of a node, or a leaf: kLeaf | (count - 1) << kFirstBits | first.
   static constexpr std::uint32_t kLeaf = 0x80000000u;

@@ -38,9 +38,7 @@ Bvh::Entered Bvh::enterTogether(std::span<const Query> bundle, BoxRays& rays) co
       tMin[lane] = query.tMin;
       tMax[lane] = query.tMax;
     }
-    const auto magnitude = [](const Double8& x) __attribute__((always_inline)) {
-      return x < 0 ? -x : x;
-    };
+    const auto magnitude = [](const Double8& x) __attribute__((always_inline)) { return x < 0 ? -x : x; };
     const Double8 lengths[3] = {magnitude(direction[0]), magnitude(direction[1]), magnitude(direction[2])};
     Double8 reach = lengths[0] > lengths[1] ? lengths[0] : lengths[1];
     reach = reach > lengths[2] ? reach : lengths[2];
@@ -66,8 +64,7 @@ Bvh::Entered Bvh::enterTogether(std::span<const Query> bundle, BoxRays& rays) co
     }
     const Long8 inside = ordinary & (start <= end);
     start = start < -kLargest ? Double8{} - kLargest : start > kLargest ? Double8{} + kLargest : start;
-    rays.limit[group] =
-        __builtin_convertvector((tMax * scale - start) * (1 + 0x1p-22), Float8);
+    rays.limit[group] = __builtin_convertvector((tMax * scale - start) * (1 + 0x1p-22), Float8);
     for (int axis = 0; axis < 3; ++axis) {
       const Double8 step = start * d[axis], p = place[axis] + step;
       const Double8 margin = 0x1p-22 * magnitude(p) + 0x1p-49 * (1.0 + away[axis] + magnitude(step));
@@ -150,9 +147,10 @@ void Bvh::traverseTogether(std::span<Query> bundle, Leaf&& leaf) const {
         forEachRay(here.rays, [&](std::size_t i) {
           const RaySet only = RaySet{1} << i;
           BoxRay ray = rays.one(i, octant);
-          traverseFrom<kSorted>(here.child, ray, bundle[i].tMax, [&](std::uint32_t first, std::uint32_t count) {
-            return visitLeaf(first, count, only) != 0 && !kSorted;
-          });
+          traverseFrom<kSorted>(here.child, ray, bundle[i].tMax,
+                                [&](std::uint32_t first, std::uint32_t count) {
+                                  return visitLeaf(first, count, only) != 0 && !kSorted;
+                                });
           if constexpr (kSorted) rays.setLimit(i, bundle[i].tMax);
         });
         continue;
@@ -160,7 +158,8 @@ void Bvh::traverseTogether(std::span<Query> bundle, Leaf&& leaf) const {
       const Node& node = nodes_[here.child];
       const std::size_t x = octant & 1, y = octant >> 1 & 1, z = octant >> 2 & 1;
       const Float4 &nearX = node.plane[3 * x], &nearY = node.plane[1 + 3 * y], &nearZ = node.plane[2 + 3 * z];
-      const Float4 &farX = node.plane[3 - 3 * x], &farY = node.plane[4 - 3 * y], &farZ = node.plane[5 - 3 * z];
+      const Float4 &farX = node.plane[3 - 3 * x], &farY = node.plane[4 - 3 * y],
+                   &farZ = node.plane[5 - 3 * z];
       Int8 touching[4] = {};  // of each child; a lane has the rays of its place in all groups
       for (std::size_t group = 0; group < BoxRays::kGroups; ++group) {
         if ((here.rays >> (8 * group) & 0xff) == 0) continue;

@@ -44,7 +44,8 @@ std::vector<Ray> raysOf(Numbers& numbers, std::size_t count, double spread) {
   }
   // Among them, now and then, one for which the accelerator's arithmetic is not made.
   if (numbers.real(0, 1) < 0.3) {
-    const Vec3 strange[] = {{1e200, -3, 1e-200}, {-1e32, 1e31, 1e32}, {kInfinity, 0, 0}, {std::nan(""), 1, 2}};
+    const Vec3 strange[] = {
+        {1e200, -3, 1e-200}, {-1e32, 1e31, 1e32}, {kInfinity, 0, 0}, {std::nan(""), 1, 2}};
     rays[count / 2].origin = strange[static_cast<std::size_t>(numbers.real(0, 4))];
   }
   return rays;
