@@ -143,36 +143,79 @@ void RayWorker::askLight(std::span<const FoundHit> hits, std::size_t point) {
   const double begin[kBundleSize] = {};
   Patchwork::Light light[kBundleSize];
   patchwork_.obstruct(*this, std::span(segments).first(count), begin, light, counts_);
+  filtering_.clear();
   for (std::size_t k = 0; k < count; ++k) {
     Shading& shading = shadings_[from[k]];
-    Color& through = shading.gathered.light[point];
-    if (light[k] == Patchwork::Light::dark || (light[k] == Patchwork::Light::clear && knowsOthers_)) {
-      through = light[k] == Patchwork::Light::clear ? kWhite : kBlack;
-      continue;
-    }
-    if (light[k] == Patchwork::Light::clear) {
-      LocalProgress missing;
-      if (const auto next = elsewhere(segments[k].ray, segments[k].tMax, missing.step)) {
-        missing.voxel = next->where;
-        shading.pending.push_back({shadowRay(*hits[from[k]].ray, shading.at, shading.spawned.samples[point]),
-                                   0, static_cast<Slot>(point), missing});
-      } else {
-        through = kWhite;
-      }
-      continue;
-    }
-    ShadowRay shadow = shadowRay(*hits[from[k]].ray, shading.at, shading.spawned.samples[point]);
-    Occluder& occluder = occluders_[point];
-    shadow.occluder = occluder.object;
-    shadow.occluderGround = occluder.ground;
-    std::uint32_t unit = 0;
-    const LocalProgress progress = followLocally(at_.tree, *this, shadow, unit, at_.setting, counts_);
-    occluder = {shadow.occluder, shadow.occluderGround};
-    if (progress.state == LocalProgress::State::missing) {
-      shading.pending.push_back({std::move(shadow), unit, static_cast<Slot>(point), progress});
+    if (light[k] == Patchwork::Light::dark) {
+      shading.gathered.light[point] = kBlack;
+    } else if (light[k] == Patchwork::Light::clear && knowsOthers_) {
+      shading.gathered.light[point] = kWhite;
     } else {
-      through = progress.state == LocalProgress::State::hit ? kBlack : shadow.through;
+      Filtering f{from[k], shadowRay(*hits[from[k]].ray, shading.at, shading.spawned.samples[point])};
+      f.limit = f.shadow.distance;
+      if (light[k] == Patchwork::Light::missing) f.state = Filtering::State::alone;
+      if (!knowsOthers_) {
+        if (const auto next = elsewhere(segments[k].ray, f.shadow.distance, f.missing.step)) {
+          f.missing.state = LocalProgress::State::missing;
+          f.missing.voxel = next->where;
+          f.limit = std::min(f.limit, next->tEnter);
+        }
+        if (light[k] == Patchwork::Light::clear) f.state = Filtering::State::passed;
+      }
+      filtering_.push_back(std::move(f));
     }
+  }
+  filter();
+  for (Filtering& f : filtering_) {
+    Shading& shading = shadings_[f.from];
+    Color& through = shading.gathered.light[point];
+    std::uint32_t unit = 0;
+    if (f.state == Filtering::State::alone) {
+      Occluder& occluder = occluders_[point];
+      f.shadow.occluder = occluder.object;
+      f.shadow.occluderGround = occluder.ground;
+      f.missing = followLocally(at_.tree, *this, f.shadow, unit, at_.setting, counts_);
+      occluder = {f.shadow.occluder, f.shadow.occluderGround};
+      if (f.missing.state == LocalProgress::State::hit) f.state = Filtering::State::dark;
+    }
+    if (f.state == Filtering::State::dark) {
+      through = kBlack;
+    } else if (f.missing.state == LocalProgress::State::missing) {
+      shading.pending.push_back({std::move(f.shadow), unit, static_cast<Slot>(point), f.missing});
+    } else {
+      through = f.shadow.through;
+    }
+  }
+}
+
+// Takes shadow rays through the transparent surfaces that are here, near to far and all together.
+void RayWorker::filter() {
+  Segment segments[kBundleSize];
+  const double begin[kBundleSize] = {};
+  Filtering* going[kBundleSize];
+  std::size_t count = 0;
+  for (Filtering& f : filtering_)
+    if (f.state == Filtering::State::going) going[count++] = &f;
+  while (count > 0) {
+    Patchwork::Found found[kBundleSize];
+    for (std::size_t i = 0; i < count; ++i)
+      segments[i] = Segment(going[i]->shadow.ray, going[i]->shadow.last, going[i]->limit);
+    patchwork_.visit(*this, std::span(segments).first(count), begin, found, counts_);
+    std::size_t left = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      Filtering& f = *going[i];
+      if (!found[i].settled) {
+        f.state = Filtering::State::alone;  // from where it is
+      } else if (!found[i].hit.found()) {
+        f.state = Filtering::State::passed;
+      } else if (at_.setting.transparentShadows &&
+                 passSurface(*found[i].model, found[i].hit, f.shadow, at_.setting)) {
+        going[left++] = &f;
+      } else {
+        f.state = Filtering::State::dark;
+      }
+    }
+    count = left;
   }
 }
 

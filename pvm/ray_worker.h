@@ -182,11 +182,21 @@ class RayWorker : public GroundSource, public PatchSource {
     std::vector<Pending> pending;  // what misses something that is not here
   };
 
+  // A shadow ray that is not simply stopped or let through.
+  struct Filtering {
+    std::size_t from;  // hit
+    ShadowRay shadow;
+    double limit = 0;  // as far as its way is known
+    enum class State : std::uint8_t { going, dark, passed, alone } state = State::going;
+    LocalProgress missing{};  // where it goes on after `limit`, if anywhere
+  };
+
   void layPatches(std::span<const Bounds> cellContents);
   double beginOf(Vec3 origin, Vec3 direction, std::uint32_t step) const;
   // The three parts of shade().
   void lookAt(std::span<const FoundHit> hits);
   void askLight(std::span<const FoundHit> hits, std::size_t point);
+  void filter();
   std::optional<ReplyTo> conclude(const FoundHit& hit, Shading& shading);
   void sendOn(const ShadowHead& head, std::span<Pending> pending);
   void sendOn(const ShadowHead& head, std::span<Pending> pending, const LightSource& light);
@@ -224,6 +234,7 @@ class RayWorker : public GroundSource, public PatchSource {
   std::vector<Occluder> occluders_;  // by light point
   Onward onward_;
   LightAnswers settled_;
+  std::vector<Filtering> filtering_;
   Expect expect_;
   std::vector<Patchwork::Light> visitorLight_;
 
