@@ -183,7 +183,11 @@ void Sampler::addRows() {
   const std::int32_t end = std::min(begin + kBlock, rowCount_);
   for (std::int32_t y = begin; y < end; ++y) {
     Row& row = rows_.emplace_back();
-    row.pixels.resize(static_cast<std::size_t>(area_.width));
+    if (!spare_.empty()) {
+      row.pixels = std::move(spare_.back());
+      spare_.pop_back();
+    }
+    row.pixels.assign(static_cast<std::size_t>(area_.width), Pixel{});
     for (std::int32_t x = 0; x < area_.width; ++x) {
       Pixel& pixel = row.pixels[static_cast<std::size_t>(x)];
       const bool side = x == 0 || x == area_.width - 1, end = y == 0 || y == area_.height - 1;
@@ -244,6 +248,7 @@ bool Sampler::takeRow(std::vector<Color>& row) {
   if (refining_ && line_.y <= std::min(firstRow_ + 1, area_.height - 1)) return false;
   row.clear();
   for (const Pixel& pixel : rows_.front().pixels) row.push_back(pixel.full ? pixel.whole : pixel.first);
+  spare_.push_back(std::move(rows_.front().pixels));
   rows_.pop_front();
   guesses_.erase(guesses_.begin(), guesses_.lower_bound(Place{++firstRow_, 0}));
   return true;

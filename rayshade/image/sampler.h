@@ -155,8 +155,9 @@ class Sampler {
   std::int32_t rowCount_;   // with the line below the picture, if it is traced
   std::int32_t rowsAhead_;  // how far rows are held beyond the first that is not taken
 
-  std::deque<Row> rows_;       // those that are held
-  std::int32_t firstRow_ = 0;  // the number of rows_[0]
+  std::deque<Row> rows_;                   // those that are held
+  std::int32_t firstRow_ = 0;              // the number of rows_[0]
+  std::vector<std::vector<Pixel>> spare_;  // of rows that were taken: their memory is used again
 
   Place ahead_{0, 0};           // the next pixel to get its first sample, or all if it is on the border
   Place line_{1, 1};            // the next cross to decide
