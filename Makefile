@@ -9,6 +9,7 @@
 #   make fuzz         the fuzzers, FUZZ_SECONDS each, in the same build tree
 #   make bench        docs/speed-and-error.md: measures error against time (a quarter of an hour)
 #   make benches      the other measuring programs into bin/bench/
+#   make bench-embree bin/bench/embree_rate: rays per second beside Embree (Debian: libembree-dev)
 #   make experiments  the schemes of the paper measured over PVM, into docs/experiments/ (20 minutes);
 #                     QUICK=1: small pictures, into BUILD/experiments (2 minutes)
 #
@@ -53,13 +54,14 @@ guarded_tests := $(call objects,$(foreach name,archive expression fuzz_corpus im
   $(filter-out tests/support/oracle.cc,$(call find_sources,tests/support)) $(wildcard tests/fuzz/any_*.cc))
 fuzzers := $(patsubst tests/fuzz/%.cc,$(BIN)/%,$(wildcard tests/fuzz/*_fuzz.cc))
 fuzzed := $(call objects,$(wildcard tests/fuzz/any_*.cc))
-benches := $(patsubst tests/bench/%.cc,$(BIN)/bench/%,$(call find_sources,tests/bench))
+embree_bench := tests/bench/embree_rate.cc
+benches := $(patsubst tests/bench/%.cc,$(BIN)/bench/%,$(filter-out $(embree_bench),$(call find_sources,tests/bench)))
 
 roles := host voxel-trace pyramid-trace shade
 programs := $(BIN)/rayshade $(BIN)/rayshade-error $(BIN)/spd $(roles:%=$(BIN)/rayshade-%)
 test_programs := $(BIN)/rayshade-tests $(BIN)/link-tests $(BIN)/pvm-tests
 
-.PHONY: all demo check check-sanitized test guarded install fuzz fuzzers bench benches experiments format clean packages
+.PHONY: all demo check check-sanitized test guarded install fuzz fuzzers bench benches bench-embree experiments format clean packages
 all: $(programs)
 
 # What runs for long is worth a tenth more.  -Wno-restrict: g++ 12 then sees overlaps in std::string that are not there (its
@@ -125,6 +127,8 @@ guarded: $(BIN)/guarded-tests
 	@PROGRAMS=guarded-tests tests/support/run_tests $(BIN)
 
 benches: $(benches)
+bench-embree: LIBRARIES += -lembree3
+bench-embree: $(BIN)/bench/embree_rate
 
 bench: $(BIN)/rayshade $(BIN)/rayshade-error $(BIN)/spd
 	@tests/bench/speed_and_error --bin $(BIN) docs

@@ -79,7 +79,13 @@ void RayWorker::sendHome() {
 
 Ground RayWorker::patch(std::uint32_t number, std::size_t rays) {
   const PatchPlace& place = patches_[number];
-  return place.mine ? own_->own(place.voxel) : cache_.find(place.cell, rays);
+  if (place.mine) return own_->own(place.voxel);
+  const Ground ground = cache_.find(place.cell, rays);
+  if (lookingForLight_) {
+    shadowCounts_.asked += rays;
+    if (ground.region != nullptr) shadowCounts_.hits += rays;
+  }
+  return ground;
 }
 
 // Where a ray enters the voxel at a position of its walk: what lies before has been looked at.
@@ -96,6 +102,7 @@ void RayWorker::visit(std::span<const RayTask> rays, std::span<Patchwork::Found>
     segments[i] = Segment(rays[i].ray);
     begin[i] = beginOf(rays[i].ray.origin, rays[i].ray.direction, rays[i].step);
   }
+  lookingForLight_ = false;
   patchwork_.visit(*this, std::span(segments).first(rays.size()), begin, found, counts_);
   for (std::size_t i = 0; i < rays.size(); ++i) {
     found[i].settled = found[i].settled && knowsOthers_;
@@ -140,6 +147,7 @@ void RayWorker::askLight(std::span<const FoundHit> hits, std::size_t point) {
   }
   if (count == 0) return;
   counts_.shadowRays += count;
+  lookingForLight_ = true;
   const double begin[kBundleSize] = {};
   Patchwork::Light light[kBundleSize];
   patchwork_.obstruct(*this, std::span(segments).first(count), begin, light, counts_);
@@ -298,6 +306,7 @@ bool RayWorker::fetchingPays(CellId missing, std::size_t rays) const {
 }
 
 void RayWorker::follow(std::span<const Visitors> visitors, const Model& model, const VoxelSource& voxels) {
+  lookingForLight_ = true;
   visitorLight_.clear();
   Segment segments[kBundleSize];
   double begin[kBundleSize];

@@ -92,7 +92,7 @@ class RayWorker : public GroundSource, public PatchSource {
   // `own`: null for a task that holds no voxels.
   RayWorker(TaskDesk& desk, const OwnVoxels* own) : desk_(desk), own_(own) {}
 
-  // A new epoch: everything that waits is dropped.  `finder`: this task's number among those that find intersections.
+  // A new epoch of this host: everything that waits is dropped.  `finder`: this task's number among those that find intersections.
   void begin(TaskId host, Configure&& message, std::uint32_t cluster, std::uint32_t finder);
 
   void setWeights(std::vector<std::uint32_t> weights) {
@@ -226,7 +226,8 @@ class RayWorker : public GroundSource, public PatchSource {
     bool mine = false;
   };
   std::vector<PatchPlace> patches_;
-  bool knowsOthers_ = false;  // the cells of others are patches, too
+  bool knowsOthers_ = false;      // the cells of others are patches, too
+  bool lookingForLight_ = false;  // for shadow rays, not for others
   Patchwork patchwork_;
   std::array<Shading, kBundleSize> shadings_;  // kept: they take memory
   Model noModel_;

@@ -8,27 +8,12 @@
 #include <gtest/gtest.h>
 
 #include "rayshade/render.h"
+#include "tests/support/numbers.h"
 #include "tests/support/random_scene.h"
 #include "tests/support/render_text.h"
 
 namespace rayshade {
 namespace {
-
-class Numbers {
- public:
-  explicit Numbers(std::uint64_t seed) : key_{mixBits(seed)} {}
-  double real(double low, double high) {
-    return low + (high - low) * uniform(key_, Dimension::jitterX, ++count_);
-  }
-  Vec3 point(double low, double high) {
-    const double x = real(low, high), y = real(low, high), z = real(low, high);
-    return {x, y, z};
-  }
-
- private:
-  RandomKey key_;
-  std::uint32_t count_ = 0;
-};
 
 // Rays from one point into directions that differ by `spread`; each component may be exactly 0.
 std::vector<Ray> raysOf(Numbers& numbers, std::size_t count, double spread) {

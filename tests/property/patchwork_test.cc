@@ -6,28 +6,13 @@
 
 #include "rayshade/scene/parser.h"
 #include "rayshade/space/contents.h"
+#include "tests/support/numbers.h"
 #include "tests/support/random_scene.h"
 
 namespace rayshade {
 namespace {
 
 constexpr Exposure kExposure{0.25, 0.75, 0};
-
-class Numbers {
- public:
-  explicit Numbers(std::uint64_t seed) : key_{mixBits(seed)} {}
-  double real(double low, double high) {
-    return low + (high - low) * uniform(key_, Dimension::glossX, ++count_);
-  }
-  Vec3 point(double low, double high) {
-    const double x = real(low, high), y = real(low, high), z = real(low, high);
-    return {x, y, z};
-  }
-
- private:
-  RandomKey key_;
-  std::uint32_t count_ = 0;
-};
 
 // A random scene in cells, some of which are here.
 class Cells : public PatchSource {
