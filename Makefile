@@ -123,8 +123,9 @@ check-sanitized:
 test: $(programs) $(test_programs)
 	@tests/support/run_tests $(BIN)
 
+# Sanitizers make tests eight times slower: fewer random scenes than without.
 guarded: $(BIN)/guarded-tests
-	@PROGRAMS=guarded-tests tests/support/run_tests $(BIN)
+	@RAYSHADE_TEST_SEEDS=$${RAYSHADE_TEST_SEEDS:-25} PROGRAMS=guarded-tests tests/support/run_tests $(BIN)
 
 benches: $(benches)
 bench-embree: LIBRARIES += -lembree3
