@@ -125,7 +125,7 @@ test: $(programs) $(test_programs)
 
 # Sanitizers make tests eight times slower: fewer random scenes than without.
 guarded: $(BIN)/guarded-tests
-	@RAYSHADE_TEST_SEEDS=$${RAYSHADE_TEST_SEEDS:-25} PROGRAMS=guarded-tests tests/support/run_tests $(BIN)
+	@RAYSHADE_TEST_SEEDS=$${RAYSHADE_TEST_SEEDS:-30} PROGRAMS=guarded-tests tests/support/run_tests $(BIN)
 
 benches: $(benches)
 bench-embree: LIBRARIES += -lembree3
