@@ -357,8 +357,8 @@ void serialize(Archive& archive, RayTask& m) {
   archive(m.ray, m.step, m.to);
 }
 // A list whose elements are `leastBytes` at least on the wire.
-template <class Archive, class T, std::size_t N, class Element>
-void serializeEach(Archive& archive, InlineVector<T, N>& list, std::size_t leastBytes, Element element) {
+template <class Archive, class List, class Element>
+void serializeEach(Archive& archive, List& list, std::size_t leastBytes, Element element) {
   auto size = static_cast<std::uint32_t>(list.size());
   archive(size);
   if constexpr (Archive::kReading) {
@@ -368,7 +368,7 @@ void serializeEach(Archive& archive, InlineVector<T, N>& list, std::size_t least
       element(list.emplace_back());
     }
   } else {
-    for (T& value : list) element(value);
+    for (auto& value : list) element(value);
   }
 }
 template <class Archive>
@@ -414,14 +414,9 @@ void serialize(Archive&, PyramidWanted&) {}
 // Samples are given row by row of small blocks: most are the right neighbour of the one before.
 template <class Archive>
 void serialize(Archive& archive, PrimaryRays& m) {
-  auto size = static_cast<std::uint32_t>(m.samples.size());
-  archive(m.firstRecord, size);
-  if constexpr (Archive::kReading) {
-    if (size > archive.left()) return archive.fail();
-    m.samples.resize(size);
-  }
+  archive(m.firstRecord);
   SampleId expected{0, 0, 0};
-  for (SampleId& sample : m.samples) {
+  serializeEach(archive, m.samples, 1, [&](SampleId& sample) {
     bool neighbour = false;
     if constexpr (!Archive::kReading) neighbour = sample == expected;
     archive(neighbour);
@@ -432,7 +427,7 @@ void serialize(Archive& archive, PrimaryRays& m) {
     }
     expected = sample;
     if (expected.x < std::numeric_limits<std::int32_t>::max()) ++expected.x;
-  }
+  });
 }
 template <class Archive>
 void serialize(Archive& archive, CellWanted& m) {
@@ -453,14 +448,9 @@ void serialize(Archive& archive, Weights& m) {
 // Where nothing is there is the background, over and over.
 template <class Archive>
 void serialize(Archive& archive, SampleColors& m) {
-  auto size = static_cast<std::uint32_t>(m.colors.size());
-  archive(m.first, size);
-  if constexpr (Archive::kReading) {
-    if (size > archive.left()) return archive.fail();
-    m.colors.resize(size);
-  }
+  archive(m.first);
   Color before = kBlack;
-  for (Color& color : m.colors) {
+  serializeEach(archive, m.colors, 1, [&](Color& color) {
     bool again = false;
     if constexpr (!Archive::kReading) again = sameBits(color, before);
     archive(again);
@@ -470,7 +460,7 @@ void serialize(Archive& archive, SampleColors& m) {
       archive(color);
     }
     before = color;
-  }
+  });
 }
 template <class Archive>
 void serialize(Archive& archive, Answer& m) {
