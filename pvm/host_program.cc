@@ -108,8 +108,9 @@ void declareHostOptions(CLI::App& app, HostProgramOptions& o) {
   app.add_option("--shadows", o.shadows, "shadow rays: forward, local or auto")
       ->check(CLI::IsMember({"forward", "local", "auto"}))
       ->group(sharing);
-  app.add_option("--shading", o.shading,
-                 "separate: always by shade tasks; near: what has all of its colours is shaded at once")
+  app.add_option(
+         "--shading", o.shading,
+         "separate: always by shade tasks; near: by the task that found the hit, if nothing of it leaves")
       ->check(CLI::IsMember({"separate", "near"}))
       ->group(sharing);
   app.add_option("--cache", o.cacheMegabytes, "object cache of each task, in MB")

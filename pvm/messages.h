@@ -85,7 +85,7 @@ struct DemandPolicy {
   ShadowPolicy shadows = ShadowPolicy::forward;
   Horizon horizon;
   bool secondariesTravel = true;        // false: pyramid tasks trace secondary rays too, with what they fetch
-  bool shadeAtOnce = false;             // what has all of its colours is shaded where it was found
+  bool shadeAtOnce = false;             // what gets all of its colours where it was found is shaded there
   std::uint64_t cacheBytes = 64 << 20;  // of each task
   std::uint32_t outstanding = 64;       // cells asked for at a time
 };
@@ -293,7 +293,7 @@ using AllMessages = TypeList<Forget, Items, ItemsTaken, Configure, Ready, Finish
                              ShadowTask, Expect, Answer, PyramidWanted, PrimaryRays, CellWanted, CellItems,
                              Load, Weights, LightAnswers, SampleColors>;
 
-inline constexpr std::uint8_t kWireVersion = 3;
+inline constexpr std::uint8_t kWireVersion = 4;
 
 // Does this machine compute the same bits as another?  A hash over results of the library functions that the pictures
 // depend on: their last bits differ between processors on which glibc chooses different code.

@@ -28,10 +28,11 @@ NeededTasks neededTasks(const Needs& needs, const HostOptions& options, std::siz
                                 "no more pyramids in the picture, of " + std::to_string(tile) + " rays");
   // Does every hit have all of its colours where it is found?
   const bool whole = tasks.wishes.voxels == 1 && tasks.wishes.pyramids == 0 && options.voxelsPerTask <= 1;
-  if (options.policy.shadeAtOnce && !needs.secondaryRays && (!needs.shadowRays || whole)) {
+  if (options.policy.shadeAtOnce && (whole || (!needs.secondaryRays && !needs.shadowRays))) {
     tasks.wishes.shades = 0;
     tasks.why.push_back(std::string("no shade tasks: every hit is shaded where it is found, ") +
-                        (needs.shadowRays ? "where all objects are" : "no colour has to be waited for"));
+                        (needs.shadowRays || needs.secondaryRays ? "where all objects are"
+                                                                 : "no colour has to be waited for"));
   }
   return tasks;
 }

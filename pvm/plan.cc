@@ -61,7 +61,9 @@ void addPolicy(std::string& text, const HostOptions& options, const Setting& set
       policy.secondariesTravel || options.wishes.pyramids == 0 ? "travel from voxel to voxel"
                                                                : "in the pyramid task that found the hit");
   add(text, "shading         %s\n",
-      policy.shadeAtOnce ? "at once where all colours are known, else by shade tasks" : "by shade tasks");
+      policy.shadeAtOnce
+          ? "where all colours come from the task that found the hit, by that task; else by shade tasks"
+          : "by shade tasks");
 }
 
 }  // namespace

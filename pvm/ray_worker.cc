@@ -17,7 +17,9 @@ constexpr double kExpectedUses = 64;
 void RayWorker::begin(TaskId host, Configure&& message, std::uint32_t cluster, std::uint32_t finder) {
   host_ = host;
   home_.clear();
-  Contents contents(message.tree, message.cellContents);
+  Contents contents(message.tree, message.cellContents, [&](VoxelId voxel) {
+    return own_ != nullptr && message.directory.ownerOf(voxel, cluster) == desk_.link.self();
+  });
   at_ = {
       std::move(message.setting), std::move(message.tree), std::move(message.directory), cluster,
       message.exposure,           message.policy,          std::move(message.cellBytes), std::move(contents)};
@@ -29,6 +31,7 @@ void RayWorker::begin(TaskId host, Configure&& message, std::uint32_t cluster, s
   asked_.clear();
   toAsk_.clear();
   queued_.clear();
+  near_.clear();
   cache_.begin(at_.policy.cacheBytes);
   layPatches(message.cellContents);
   // What does not fit is thrown out before it has been used as often.
@@ -104,10 +107,16 @@ void RayWorker::visit(std::span<const RayTask> rays, std::span<Patchwork::Found>
   }
   lookingForLight_ = false;
   patchwork_.visit(*this, std::span(segments).first(rays.size()), begin, found, counts_);
+  const RaySet leaving = knowsOthers_ ? 0 : mayLeave(std::span(segments).first(rays.size()), begin);
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    found[i].settled = found[i].settled && knowsOthers_;
+    found[i].settled = found[i].settled && (leaving >> i & 1) == 0;
     counts_.hits += found[i].settled && found[i].hit.found();
   }
+}
+
+RaySet RayWorker::mayLeave(std::span<Segment> segments, std::span<const double> begin) const {
+  for (std::size_t i = 0; i < segments.size(); ++i) segments[i].tMin = std::max(segments[i].tMin, begin[i]);
+  return at_.contents.mayMeetOthers(segments);
 }
 
 std::optional<WalkStep<VoxelId>> RayWorker::elsewhere(const LocalRay& ray, double t,
@@ -151,18 +160,20 @@ void RayWorker::askLight(std::span<const FoundHit> hits, std::size_t point) {
   const double begin[kBundleSize] = {};
   Patchwork::Light light[kBundleSize];
   patchwork_.obstruct(*this, std::span(segments).first(count), begin, light, counts_);
+  const RaySet leaving = knowsOthers_ ? 0 : mayLeave(std::span(segments).first(count), begin);
   filtering_.clear();
   for (std::size_t k = 0; k < count; ++k) {
     Shading& shading = shadings_[from[k]];
+    const bool leaves = (leaving >> k & 1) != 0;
     if (light[k] == Patchwork::Light::dark) {
       shading.gathered.light[point] = kBlack;
-    } else if (light[k] == Patchwork::Light::clear && knowsOthers_) {
+    } else if (light[k] == Patchwork::Light::clear && !leaves) {
       shading.gathered.light[point] = kWhite;
     } else {
       Filtering f{from[k], shadowRay(*hits[from[k]].ray, shading.at, shading.spawned.samples[point])};
       f.limit = f.shadow.distance;
       if (light[k] == Patchwork::Light::missing) f.state = Filtering::State::alone;
-      if (!knowsOthers_) {
+      if (leaves) {
         if (const auto next = elsewhere(segments[k].ray, f.shadow.distance, f.missing.step)) {
           f.missing.state = LocalProgress::State::missing;
           f.missing.voxel = next->where;
@@ -227,35 +238,94 @@ void RayWorker::filter() {
   }
 }
 
-// Tells a shade task of an intersection, and says where the colours of its secondary rays go, if there are any; or
-// shades it.
+// Shades a hit, or what can be shaded of it here, or tells a shade task of it.  Says where the colours of its secondary
+// rays go, if there are any.
 std::optional<ReplyTo> RayWorker::conclude(const FoundHit& found, Shading& shading) {
   const Secondary& spawned = shading.spawned;
   const Ray& ray = *found.ray;
-  const bool complete = shading.pending.empty() && !spawned.transmitted && !spawned.reflected;
-  expect_.hit = describe(ray, found.hit.t, shading.at, spawned, at_.setting);
-  if (complete && at_.policy.shadeAtOnce) {
+  const bool onward = spawned.transmitted || spawned.reflected;
+  if (at_.policy.shadeAtOnce && shading.pending.empty()) {
+    const Color sum = addLights(ray, shading.at, spawned, shading.gathered, at_.setting);
+    const WayBack back = wayBack(ray, found.hit.t, spawned, at_.setting);
+    if (onward) return ReplyTo{desk_.link.self(), near_.add(sum, back, found.to), 0};
     ++combined_;
-    answer(found.to, combine(expect_.hit, shading.gathered, at_.setting, spawned.samples));
+    answer(found.to, finish(sum, back, {}, {}, at_.setting));
     return std::nullopt;
   }
-  if (at_.directory.shadeTasks.empty()) {  // the host's mistake
-    ++desk_.outbox.traffic.refused;
-    return std::nullopt;
-  }
-  const std::size_t chosen = chooseShadeTask(at_.directory, serial_++);
-  const TaskId shader = at_.directory.shadeTasks[chosen];
-  const RecordId record = recordOf(finder_, numbers_[chosen]);
-  expect_.record = record;
-  expect_.to = found.to;
+  const ReplyTo to = outward(found.to);
+  expect_.hit = describe(ray, found.hit.t, shading.at, spawned, at_.setting);
+  expect_.to = to;
   expect_.gathered = shading.gathered;
   expect_.pending.clear();
   for (const Pending& pending : shading.pending) expect_.pending.push_back(pending.slot);
+  const ReplyTo there = tellShader(onward || !shading.pending.empty());
+  if (!shading.pending.empty())
+    sendOn({there.task, there.record, ray.moment, ray.sample, ray.key}, shading.pending);
+  return onward ? std::optional(there) : std::nullopt;
+}
+
+ReplyTo RayWorker::tellShader(bool waits) {
+  if (at_.directory.shadeTasks.empty()) {  // the host's mistake
+    ++desk_.outbox.traffic.refused;
+    return {};
+  }
+  const std::size_t chosen = chooseShadeTask(at_.directory, serial_++);
+  const TaskId shader = at_.directory.shadeTasks[chosen];
+  expect_.record = recordOf(finder_, numbers_[chosen]);
   desk_.outbox.post(shader, expect_);
-  if (complete) return std::nullopt;
-  ++numbers_[chosen];
-  if (!shading.pending.empty()) sendOn({shader, record, ray.moment, ray.sample, ray.key}, shading.pending);
-  return ReplyTo{shader, record, 0};
+  if (waits) ++numbers_[chosen];
+  return {shader, expect_.record, 0};
+}
+
+void RayWorker::answer(ReplyTo to, Color color) {
+  while (to.task == desk_.link.self()) {
+    NearHit& hit = near_[to.record];
+    const std::uint64_t number = to.record;
+    if (hit.there.task != kNobody) {
+      to = {hit.there.task, hit.there.record, to.slot};
+      near_.forgetRay(number);
+      break;
+    }
+    (to.slot == kTransmittedSlot ? hit.transmitted : hit.reflected) = color;
+    if (hit.rays > 1) {
+      --hit.rays;
+      return;
+    }
+    ++combined_;
+    color = finish(hit.sum, hit.back, hit.transmitted.value_or(kBlack), hit.reflected.value_or(kBlack),
+                   at_.setting);
+    to = hit.to;
+    near_.forgetRay(number);
+  }
+  if (to.task != host_) {
+    desk_.outbox.post(to.task, Answer{to.record, to.slot, color});
+    return;
+  }
+  home_.push_back({to.record, color});
+  if (home_.size() == kMostHome) sendHome();
+}
+
+ReplyTo RayWorker::outward(ReplyTo to) {
+  if (to.task != desk_.link.self()) return to;
+  NearHit& hit = near_[to.record];
+  if (hit.there.task == kNobody) hit.there = handOver(hit);
+  const ReplyTo there{hit.there.task, hit.there.record, to.slot};
+  near_.forgetRay(to.record);
+  return there;
+}
+
+// With it go those that wait for it: their colours come from outside now.
+ReplyTo RayWorker::handOver(NearHit& hit) {
+  const ReplyTo to = outward(hit.to);
+  expect_.hit = afterLights(hit.sum, hit.back);
+  expect_.to = to;
+  expect_.gathered = {};
+  expect_.pending.clear();
+  const ReplyTo there = tellShader(true);
+  if (hit.transmitted)
+    desk_.outbox.post(there.task, Answer{there.record, kTransmittedSlot, *hit.transmitted});
+  if (hit.reflected) desk_.outbox.post(there.task, Answer{there.record, kReflectedSlot, *hit.reflected});
+  return there;
 }
 
 // Shadow rays of one intersection that miss something: to the tasks that have it, or into waiting until it is here.
@@ -308,6 +378,7 @@ bool RayWorker::fetchingPays(CellId missing, std::size_t rays) const {
 void RayWorker::follow(std::span<const Visitors> visitors, const Model& model, const VoxelSource& voxels) {
   lookingForLight_ = true;
   visitorLight_.clear();
+  visitorLeaves_.clear();
   Segment segments[kBundleSize];
   double begin[kBundleSize];
   std::size_t count = 0;
@@ -316,6 +387,8 @@ void RayWorker::follow(std::span<const Visitors> visitors, const Model& model, c
     visitorLight_.resize(known + count);
     patchwork_.obstruct(*this, std::span(segments).first(count), begin,
                         std::span(visitorLight_).subspan(known), counts_);
+    const RaySet leaving = knowsOthers_ ? 0 : mayLeave(std::span(segments).first(count), begin);
+    for (std::size_t i = 0; i < count; ++i) visitorLeaves_.push_back((leaving >> i & 1) != 0);
     count = 0;
   };
   for (const Visitors& some : visitors) {
@@ -334,9 +407,10 @@ void RayWorker::follow(std::span<const Visitors> visitors, const Model& model, c
     settled_.record = some.head.record;
     settled_.colors.clear();
     for (const ShadowTravel& travel : some.rays) {
+      const bool leaves = visitorLeaves_[next] != 0;
       const Patchwork::Light light = visitorLight_[next++];
       std::uint32_t step = travel.step;
-      if (light == Patchwork::Light::missing || (light == Patchwork::Light::clear && !knowsOthers_)) {
+      if (light == Patchwork::Light::missing || (light == Patchwork::Light::clear && leaves)) {
         if (const auto next = elsewhere({travel.origin, travel.direction, 1}, travel.distance, step)) {
           ShadowTravel rest = travel;
           rest.step = step;

@@ -3,7 +3,7 @@
 //
 // Rays are traced in bundles (rayshade/patchwork.h); what a bundle cannot settle goes on ray by ray.
 //
-// At a hit the secondary rays are spawned and a shade task is told.  Shadow rays are followed as far as the voxels of this
+// At a hit the secondary rays are spawned and a shade task is told, or the hit is shaded here (near_hits.h).  Shadow rays are followed as far as the voxels of this
 // task go; what comes after is decided by the policy: `forward` sends them to the next voxel's task, `local` fetches the
 // cells that are missing into the object cache and goes on when they have come (Reinhard & Jansen, section 5), `automatic`
 // does what is expected to move fewer bytes.  All shadow rays from one hit to one area light are one bundle, the light
@@ -16,6 +16,7 @@
 #include <map>
 #include <unordered_set>
 
+#include "pvm/near_hits.h"
 #include "pvm/task_desk.h"
 #include "rayshade/patchwork.h"
 #include "rayshade/shading/evaluate.h"
@@ -116,13 +117,11 @@ class RayWorker : public GroundSource, public PatchSource {
   void shade(std::span<const FoundHit> hits, Queue queue);
 
   // The colour of a ray; those of samples gather until flush().
-  void answer(const ReplyTo& to, Color color) {
-    if (to.task != host_) {
-      desk_.outbox.post(to.task, Answer{to.record, to.slot, color});
-      return;
-    }
-    home_.push_back({to.record, color});
-    if (home_.size() == kMostHome) sendHome();
+  void answer(ReplyTo to, Color color);
+  // Sends a ray of this task on to another one.
+  void sendOn(TaskId to, RayTask& task) {
+    task.to = outward(task.to);
+    desk_.outbox.post(to, task);
   }
   void flush() {
     sendHome();
@@ -191,7 +190,15 @@ class RayWorker : public GroundSource, public PatchSource {
     LocalProgress missing{};  // where it goes on after `limit`, if anywhere
   };
 
+  // Where others send the colour of a ray whose colour was to come here: its hit goes over to a shade task.
+  ReplyTo outward(ReplyTo to);
+  ReplyTo handOver(NearHit& hit);
+  // Posts expect_ but for its record to some shade task; says where the colours go.  Requires that there is one.
+  ReplyTo tellShader(bool waits);
+
   void layPatches(std::span<const Bounds> cellContents);
+  // For a task that knows of others only where they have anything: the rays that might meet something there.
+  RaySet mayLeave(std::span<Segment> segments, std::span<const double> begin) const;
   double beginOf(Vec3 origin, Vec3 direction, std::uint32_t step) const;
   // The three parts of shade().
   void lookAt(std::span<const FoundHit> hits);
@@ -237,7 +244,9 @@ class RayWorker : public GroundSource, public PatchSource {
   LightAnswers settled_;
   std::vector<Filtering> filtering_;
   Expect expect_;
+  NearHits near_;
   std::vector<Patchwork::Light> visitorLight_;
+  std::vector<std::uint8_t> visitorLeaves_;
 
   std::uint32_t finder_ = 0;
   std::uint64_t serial_ = 0;                                       // of the next intersection found here

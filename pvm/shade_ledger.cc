@@ -40,11 +40,12 @@ ShadeLedger::Record* ShadeLedger::find(RecordId id) {
 }
 
 ShadeLedger::Verdict ShadeLedger::expect(Expect&& message) {
-  if (message.hit.lit.size() != lightPoints_ ||
+  // Whoever has added the lights says no more of them.
+  if (message.hit.lit.size() != (message.hit.lightsAdded ? 0 : lightPoints_) ||
       std::any_of(message.hit.lit.begin(), message.hit.lit.end(), [](Lit lit) { return lit > Lit::asked; }))
     return Verdict::refused;
   // Many intersections come with all their colours.
-  if (message.pending.empty() && !message.hit.transmitted && !message.hit.reflected) {
+  if (message.pending.empty() && !message.hit.back.transmitted && !message.hit.back.reflected) {
     complete_ = {std::move(message.hit), std::move(message.gathered), message.to};
     settled_ = &complete_;
     return Verdict::settled;
@@ -53,8 +54,8 @@ ShadeLedger::Verdict ShadeLedger::expect(Expect&& message) {
   if (record == nullptr || record->expected) return Verdict::refused;
   record->expected = true;
   record->missing = message.pending;
-  if (message.hit.transmitted) record->missing.push_back(kTransmittedSlot);
-  if (message.hit.reflected) record->missing.push_back(kReflectedSlot);
+  if (message.hit.back.transmitted) record->missing.push_back(kTransmittedSlot);
+  if (message.hit.back.reflected) record->missing.push_back(kReflectedSlot);
   record->settled = {std::move(message.hit), std::move(message.gathered), message.to};
   for (const LightAnswer& answer : record->early) fill(*record, answer.slot, answer.color);
   return conclude(message.record, *record);

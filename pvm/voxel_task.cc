@@ -152,7 +152,13 @@ void VoxelTask::on(TaskId, PrimaryRays&& work) {
   primaries_.push_back({std::move(work), 0});
   desk_.notePeak(waiting());
 }
-void VoxelTask::on(TaskId, RayTask&& task) { queue(std::move(task)); }
+void VoxelTask::on(TaskId, RayTask&& task) {
+  if (task.to.task == desk_.link.self()) {  // colours of rays that have left are sent elsewhere
+    ++desk_.outbox.traffic.refused;
+    return;
+  }
+  queue(std::move(task));
+}
 void VoxelTask::on(TaskId, const ShadowTask& task) {
   shadows_.push_back({task.head, static_cast<std::uint32_t>(task.rays.size())});
   shadowRays_.insert(shadowRays_.end(), task.rays.begin(), task.rays.end());
@@ -223,7 +229,7 @@ void VoxelTask::trace(std::span<RayTask> tasks) {
     if (!found[i].settled) {
       const LocalRay ray{task.ray.origin, task.ray.direction, 1};
       if (const auto next = worker_.elsewhere(ray, found[i].hit.t, task.step)) {
-        desk_.outbox.post(at.ownerOf(next->where), task);
+        worker_.sendOn(at.ownerOf(next->where), task);
         continue;
       }
       worker_.counts().hits += found[i].hit.found();

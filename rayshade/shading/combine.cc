@@ -14,6 +14,27 @@ Color throughAir(Color seen, Vec3 origin, Vec3 direction, double distance, const
   return seen;
 }
 
+// `sampleOf(light, ofLight, point)`: the point of that number of a light, and in the row of all points.
+template <class SampleOf>
+Color addLights(const Surface& surface, const Facing& facing, const LightStates& lit,
+                const Gathered& gathered, const Setting& setting, SampleOf sampleOf) {
+  Color sum = surface.ambient * setting.ambient;
+  std::size_t end = lit.size();  // of the points of the light that is being added
+  for (std::size_t l = setting.lights.size(); l-- > 0;) {
+    const LightSource& light = setting.lights[l];
+    const std::size_t begin = end - static_cast<std::size_t>(pointsOf(light));
+    for (std::size_t p = begin; p < end; ++p) {
+      if (lit[p] == Lit::no) continue;
+      const Color through = lit[p] == Lit::asked ? gathered.light[p] : kWhite;
+      if (through == kBlack) continue;
+      const LightSample& sample = sampleOf(static_cast<std::uint32_t>(l), p - begin, p);
+      sum = addLight(sum, surface, facing, sample.toward, sample.factor * (light.color * through));
+    }
+    end = begin;
+  }
+  return sum;
+}
+
 }  // namespace
 
 // The shading model of the language reference: Phong 1975 without normalisation.
@@ -40,17 +61,30 @@ Color broughtBack(Color sum, Vec3 origin, Vec3 direction, double distance, doubl
   return sum;
 }
 
+WayBack wayBack(const Ray& ray, double t, const OnwardRays& onward, const Setting& setting) {
+  WayBack back;
+  back.extinct = ray.extinct;
+  back.inAir = ray.media.empty();
+  const bool throughAtmosphere = back.inAir && !setting.atmosphere.empty();
+  if (throughAtmosphere) {
+    back.origin = ray.origin;
+    back.direction = ray.direction;
+  }
+  if (throughAtmosphere || back.extinct != 1) back.distance = t;
+  back.transmitted = onward.transmitted.has_value();
+  back.reflected = onward.reflected.has_value();
+  back.transmitWeight = onward.transmitWeight;
+  back.reflectWeight = onward.reflectWeight;
+  return back;
+}
+
 Intersection describe(const Ray& ray, double t, const SurfacePoint& at, const Secondary& spawned,
                       const Setting& setting) {
   Intersection hit;
+  hit.back = wayBack(ray, t, spawned, setting);
   hit.direction = ray.direction;
   hit.key = ray.key;
   hit.sample = ray.sample;
-  hit.extinct = ray.extinct;
-  hit.inAir = ray.media.empty();
-  const bool throughAtmosphere = hit.inAir && !setting.atmosphere.empty();
-  if (throughAtmosphere) hit.origin = ray.origin;
-  if (throughAtmosphere || hit.extinct != 1) hit.distance = t;
   hit.position = at.position;
   hit.normal = at.normal;
   hit.smooth = at.smooth;
@@ -66,37 +100,37 @@ Intersection describe(const Ray& ray, double t, const SurfacePoint& at, const Se
     hit.surface.translucentPower = at.surface.translucentPower;
   }
   hit.lit = spawned.lit;
-  hit.transmitted = spawned.transmitted.has_value();
-  hit.reflected = spawned.reflected.has_value();
-  hit.transmitWeight = spawned.transmitWeight;
-  hit.reflectWeight = spawned.reflectWeight;
   return hit;
 }
 
-Color combine(const Intersection& hit, const Gathered& gathered, const Setting& setting,
-              const LightSamples& samples) {
+Color addLights(const Ray& ray, const SurfacePoint& at, const Secondary& spawned, const Gathered& gathered,
+                const Setting& setting) {
+  const Facing facing{at.normal, at.geometricNormal, at.smooth, mirrored(ray.direction, at.normal)};
+  return addLights(at.surface, facing, spawned.lit, gathered, setting,
+                   [&](std::uint32_t, std::size_t, std::size_t point) -> const LightSample& {
+                     return spawned.samples[point];
+                   });
+}
+
+Color finish(Color sum, const WayBack& back, Color transmitted, Color reflected, const Setting& setting) {
+  if (back.transmitted) sum = sum + back.transmitWeight * transmitted;
+  if (back.reflected) sum = sum + back.reflectWeight * reflected;
+  return broughtBack(sum, back.origin, back.direction, back.distance, back.extinct, back.inAir, setting);
+}
+
+Color combine(const Intersection& hit, const Gathered& gathered, const Setting& setting) {
+  if (hit.lightsAdded)
+    return finish(*hit.lightsAdded, hit.back, gathered.transmitted, gathered.reflected, setting);
   const Facing facing{hit.normal, hit.geometricNormal, hit.smooth, mirrored(hit.direction, hit.normal)};
-  Color sum = hit.surface.ambient * setting.ambient;
-  std::size_t end = hit.lit.size();  // of the points of the light that is being added
-  for (std::size_t l = setting.lights.size(); l-- > 0;) {
-    const LightSource& light = setting.lights[l];
-    const auto points = static_cast<std::size_t>(pointsOf(light));
-    const std::size_t begin = end - points;
-    const LightQuery query =
-        lightQuery(hit.position, hit.key, hit.sample, static_cast<std::uint32_t>(l), setting);
-    for (std::size_t p = begin; p < end; ++p) {
-      if (hit.lit[p] == Lit::no) continue;
-      const Color through = hit.lit[p] == Lit::asked ? gathered.light[p] : kWhite;
-      if (through == kBlack) continue;
-      const LightSample sample =
-          samples.empty() ? sampleLight(light, query, static_cast<int>(p - begin)) : samples[p];
-      sum = addLight(sum, hit.surface, facing, sample.toward, sample.factor * (light.color * through));
-    }
-    end = begin;
-  }
-  if (hit.transmitted) sum = sum + hit.transmitWeight * gathered.transmitted;
-  if (hit.reflected) sum = sum + hit.reflectWeight * gathered.reflected;
-  return broughtBack(sum, hit.origin, hit.direction, hit.distance, hit.extinct, hit.inAir, setting);
+  // The lights are looked at again, with the same answers.
+  const Color sum =
+      addLights(hit.surface, facing, hit.lit, gathered, setting,
+                [&](std::uint32_t light, std::size_t ofLight, std::size_t) {
+                  return sampleLight(setting.lights[light],
+                                     lightQuery(hit.position, hit.key, hit.sample, light, setting),
+                                     static_cast<int>(ofLight));
+                });
+  return finish(sum, hit.back, gathered.transmitted, gathered.reflected, setting);
 }
 
 Color missed(const Ray& ray, const Setting& setting) {

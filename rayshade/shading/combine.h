@@ -6,26 +6,36 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
+
 #include "rayshade/shading/spawn.h"
 
 namespace rayshade {
 
-// All that combine() needs to know of a hit, and nothing else: what this scene does not ask for stays at its usual value,
-// which costs a bit on the wire.
-struct Intersection {
-  Vec3 origin, direction;  // of the ray that hit; the origin if the atmosphere asks for it
+// What becomes of the colour of a hit once its lights have been added: what is added then, and its way back along the ray
+// that hit.  What this scene does not ask for stays at its usual value, which costs a bit on the wire.
+struct WayBack {
+  Vec3 origin, direction;  // of the ray, if the atmosphere asks for them
   double distance = 0;     // t of the hit, if atmosphere or attenuation ask for it
+  double extinct = 1;      // of what the ray travelled through, if it counts
+  bool inAir = true;       // outside of all media: the atmosphere applies
+  bool transmitted = false, reflected = false;
+  Color transmitWeight, reflectWeight;
+};
+
+// All that combine() needs to know of a hit, and nothing else.
+struct Intersection {
+  WayBack back;
+  std::optional<Color>
+      lightsAdded;  // ambient light and lights have been added: then what follows does not count
+  Vec3 direction;   // of the ray that hit
   RandomKey key{};
   std::int32_t sample = 0;
-  double extinct = 1;  // of what the ray travelled through, if it counts
-  bool inAir = true;   // outside of all media: the atmosphere applies
   Vec3 position, normal;
   bool smooth = false;  // the normal is interpolated: then the geometric one counts too
   Vec3 geometricNormal;
   Surface surface;  // what is seen of it: neither its index nor how much it reflects
   LightStates lit;
-  bool transmitted = false, reflected = false;
-  Color transmitWeight, reflectWeight;
 };
 
 // The colours that come back, each in its own place.
@@ -34,8 +44,16 @@ struct Gathered {
   Color transmitted, reflected;
 };
 
+WayBack wayBack(const Ray& ray, double t, const OnwardRays& onward, const Setting& setting);
 Intersection describe(const Ray& ray, double t, const SurfacePoint& at, const Secondary& spawned,
                       const Setting& setting);
+// The same once the lights have been added.
+inline Intersection afterLights(Color sum, const WayBack& back) {
+  Intersection hit;
+  hit.back = back;
+  hit.lightsAdded = sum;
+  return hit;
+}
 
 // How a hit is turned towards lights and viewer.
 struct Facing {
@@ -52,21 +70,33 @@ Color addLight(Color sum, const Surface& surface, const Facing& facing, Vec3 tow
 Color broughtBack(Color sum, Vec3 origin, Vec3 direction, double distance, double extinct, bool inAir,
                   const Setting& setting);
 
-// `samples`: Secondary::samples, if they are still at hand; else the lights are looked at again, with the same answers.
-Color combine(const Intersection& hit, const Gathered& gathered, const Setting& setting,
-              const LightSamples& samples = {});
+// Ambient light and all lights, for those who have what spawnSecondary() has found still at hand.
+Color addLights(const Ray& ray, const SurfacePoint& at, const Secondary& spawned, const Gathered& gathered,
+                const Setting& setting);
+// What comes after the lights.
+Color finish(Color sum, const WayBack& back, Color transmitted, Color reflected, const Setting& setting);
+
+Color combine(const Intersection& hit, const Gathered& gathered, const Setting& setting);
 
 // The colour of a ray that meets nothing.
 Color missed(const Ray& ray, const Setting& setting);
 
 template <class Archive>
+void serialize(Archive& archive, WayBack& b) {
+  serializeSparse(archive, Usual{b.origin, Vec3{}}, Usual{b.direction, Vec3{}}, Usual{b.distance, 0.0},
+                  Usual{b.extinct, 1.0}, Usual{b.inAir, true}, Usual{b.transmitted, false},
+                  Usual{b.reflected, false}, Usual{b.transmitWeight, kBlack}, Usual{b.reflectWeight, kBlack});
+}
+template <class Archive>
 void serialize(Archive& archive, Intersection& i) {
+  archive(i.back, i.lightsAdded);
+  if (i.lightsAdded) {
+    if constexpr (Archive::kReading) i = afterLights(*i.lightsAdded, i.back);
+    return;
+  }
   Surface& surface = i.surface;
-  archive(i.position, i.direction, i.normal, i.key, i.lit);
-  serializeSparse(archive, Usual{i.origin, Vec3{}}, Usual{i.distance, 0.0}, Usual{i.sample, 0},
-                  Usual{i.extinct, 1.0}, Usual{i.inAir, true}, Usual{i.geometricNormal, Vec3{}},
-                  Usual{i.smooth, false}, Usual{i.transmitted, false}, Usual{i.reflected, false},
-                  Usual{i.transmitWeight, kBlack}, Usual{i.reflectWeight, kBlack});
+  archive(i.direction, i.key, i.position, i.normal, i.lit);
+  serializeSparse(archive, Usual{i.sample, 0}, Usual{i.geometricNormal, Vec3{}}, Usual{i.smooth, false});
   serializeSparse(archive, Usual{surface.ambient, kBlack}, Usual{surface.diffuse, kBlack},
                   Usual{surface.specular, kBlack}, Usual{surface.specularPower, 15.0},
                   Usual{surface.body, kWhite}, Usual{surface.translucent, kBlack},

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rayshade/space/contents.h"
 
+#include "rayshade/space/bvh_bundle.h"
+
 namespace rayshade {
 
 Bounds contentOf(const Bounds& object, const BinTree& tree, CellId cell) {
@@ -13,8 +15,9 @@ Bounds contentOf(const Bounds& object, const BinTree& tree, CellId cell) {
   return padded(part);
 }
 
-Contents::Contents(const BinTree& tree, std::span<const Bounds> cells) {
-  std::vector<Bounds> full;
+Contents::Contents(const BinTree& tree, std::span<const Bounds> cells,
+                   const std::function<bool(VoxelId)>& isOwn) {
+  std::vector<Bounds> full, ofOthers;
   std::uint32_t cell = 0;
   for (std::uint32_t voxel = 0; voxel < voxelCount(tree); ++voxel) {
     const std::uint32_t end = voxel + 1 < voxelCount(tree)
@@ -24,7 +27,19 @@ Contents::Contents(const BinTree& tree, std::span<const Bounds> cells) {
     for (; cell < end; ++cell)
       if (!cells[cell].empty()) full.push_back(cells[cell]);
     voxels_.emplace_back(full);
+    if (!isOwn(VoxelId{voxel})) ofOthers.insert(ofOthers.end(), full.begin(), full.end());
   }
+  others_ = Bvh(ofOthers);
+}
+
+RAYSHADE_FOR_THIS_PROCESSOR
+RaySet Contents::mayMeetOthers(std::span<Segment> segments) const {
+  RaySet meeting = 0;
+  others_.any(segments, [&](std::uint32_t, std::uint32_t, RaySet rays) {
+    meeting |= rays;
+    return rays;
+  });
+  return meeting;
 }
 
 }  // namespace rayshade

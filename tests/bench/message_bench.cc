@@ -64,8 +64,8 @@ Expect expectation(RecordId record, std::size_t pending, bool reflected) {
   e.gathered.light.resize(3);
   for (std::size_t i = 0; i < 3; ++i) e.hit.lit[i] = Lit::asked;
   for (std::size_t i = 0; i < pending; ++i) e.pending.push_back(static_cast<Slot>(i));
-  e.hit.reflected = reflected;
-  e.hit.reflectWeight = {.5, .5, .5};
+  e.hit.back.reflected = reflected;
+  e.hit.back.reflectWeight = {.5, .5, .5};
   return e;
 }
 

@@ -74,6 +74,7 @@ TEST(Needs, NoShadeTasksWhereNoColourIsWaitedFor) {
   EXPECT_EQ(rendersTheSame(lit + kThree, nearShading(2, 0)), 1u);
   EXPECT_EQ(rendersTheSame(lit + kThree, nearShading(1, 1)), 1u);
   EXPECT_EQ(rendersTheSame(dark + kThree + mirror, nearShading(2, 1)), 1u);
+  EXPECT_EQ(rendersTheSame(lit + kThree + mirror, nearShading(1, 0)), 0u);
   HostOptions apart = nearShading(2, 1);
   apart.policy.shadeAtOnce = false;
   EXPECT_EQ(rendersTheSame(dark + kThree, apart), 1u);

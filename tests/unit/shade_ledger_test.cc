@@ -18,7 +18,7 @@ Expect expectation(RecordId record) {
   e.hit.lit[0] = Lit::no;
   e.hit.lit[1] = Lit::asked;
   e.hit.lit[2] = Lit::asked;
-  e.hit.transmitted = e.hit.reflected = true;
+  e.hit.back.transmitted = e.hit.back.reflected = true;
   e.gathered.light.resize(3);
   e.gathered.light[1] = {1, 2, 3};
   e.pending.push_back(2);
