@@ -242,12 +242,13 @@ void PictureWriter::row(std::span<const Color> colors) {
 
 void PictureWriter::writeLevels(std::span<const Color> colors) {
   const std::uint32_t most = mostOf(format_);
-  bytes_.clear();
+  bytes_.resize(colors.size() * 3 * (most > 255 ? 2 : 1));
+  std::uint8_t* to = bytes_.data();
   for (const Color& c : colors) {
     for (double light : {c.r, c.g, c.b}) {
       const std::uint32_t level = levelOf(static_cast<float>(light), gamma_, most);
-      if (most > 255) bytes_.push_back(static_cast<std::uint8_t>(level >> 8));  // PNG is big-endian
-      bytes_.push_back(static_cast<std::uint8_t>(level & 0xff));
+      if (most > 255) *to++ = static_cast<std::uint8_t>(level >> 8);  // PNG is big-endian
+      *to++ = static_cast<std::uint8_t>(level & 0xff);
     }
   }
   if (png_)

@@ -64,20 +64,24 @@ SamplePosition samplePosition(const PictureSpec& spec, std::uint64_t seed, std::
   SamplePosition at;
   at.key = sampleKey(seed, frame, static_cast<std::uint32_t>(id.x), static_cast<std::uint32_t>(id.y),
                      static_cast<std::uint32_t>(id.cell));
+  at.side = side;
   at.number = sampleNumber(side, id.cell);
   auto jitter = [&](Dimension dimension) { return spec.jitter ? uniform(at.key, dimension) : 0.0; };
 
   const double width = spec.filter.width, cell = width / side;
-  at.u = id.x - width / 2 + (id.cell % side + jitter(Dimension::jitterX)) * cell;
-  at.v = id.y - width / 2 + (id.cell / side + jitter(Dimension::jitterY)) * cell;
+  const std::int32_t row = id.cell / side, column = id.cell - row * side;
+  at.u = id.x - width / 2 + (column + jitter(Dimension::jitterX)) * cell;
+  at.v = id.y - width / 2 + (row + jitter(Dimension::jitterY)) * cell;
 
   at.time = spec.startTime + frame * spec.frameLength;
   if (spec.shutter > 0) at.time += spec.shutter / (side * side) * (at.number + jitter(Dimension::time));
-
-  // The lens is always jittered: without it there would be side^2 sharp pictures on top of each other.
-  at.lensX = 2 * (at.number % side + uniform(at.key, Dimension::lensX)) / side - 1;
-  at.lensY = 2 * (at.number / side + uniform(at.key, Dimension::lensY)) / side - 1;
   return at;
+}
+
+// The lens is always jittered: without it there would be side^2 sharp pictures on top of each other.
+LensPosition lensPosition(const SamplePosition& at) {
+  return {2 * (at.number % at.side + uniform(at.key, Dimension::lensX)) / at.side - 1,
+          2 * (at.number / at.side + uniform(at.key, Dimension::lensY)) / at.side - 1};
 }
 
 bool tooMuchContrast(std::span<const Color, 5> cross, Color threshold) {
@@ -187,7 +191,8 @@ void Sampler::addRows() {
       row.pixels = std::move(spare_.back());
       spare_.pop_back();
     }
-    row.pixels.assign(static_cast<std::size_t>(area_.width), Pixel{});
+    row.pixels.clear();
+    row.pixels.resize(static_cast<std::size_t>(area_.width));
     for (std::int32_t x = 0; x < area_.width; ++x) {
       Pixel& pixel = row.pixels[static_cast<std::size_t>(x)];
       const bool side = x == 0 || x == area_.width - 1, end = y == 0 || y == area_.height - 1;
@@ -207,7 +212,8 @@ void Sampler::addRows() {
 void Sampler::demandAll(Pixel& pixel, Row& row) {
   pixel.full = true;
   if (!isWhole(pixel)) ++row.incomplete;
-  counts_.needed += static_cast<std::uint64_t>(side_ * side_ - std::popcount(pixel.given & firstBit(pixel)));
+  const bool firstCounted = (pixel.given & firstBit(pixel)) != 0;
+  counts_.needed += static_cast<std::uint64_t>(side_ * side_ - firstCounted);
   if (side_ > 1) ++counts_.supersampled;
 }
 
@@ -222,17 +228,20 @@ void Sampler::supply(const SampleId& id, Color color) {
   if ((pixel.given & bit) == 0 || (pixel.come & bit) != 0) return;
   pixel.come |= bit;
 
-  if (id.cell == pixel.firstCell) {
+  if (side_ == 1) {
+    pixel.first = color * weights_[0];
+  } else if (id.cell == pixel.firstCell) {
     pixel.first = color;
   } else {
-    pixel.samples.resize(weights_.size());
+    if (!pixel.samples) pixel.samples = std::make_unique<Color[]>(weights_.size());
     pixel.samples[static_cast<std::size_t>(id.cell)] = color;
   }
-  if (isWhole(pixel)) {  // always added in the same order: the first sample, then the others by cell
-    pixel.whole = pixel.first * weights_[pixel.firstCell];
-    for (std::size_t cell = 0; cell < weights_.size(); ++cell)
-      if (cell != pixel.firstCell) pixel.whole = pixel.whole + pixel.samples[cell] * weights_[cell];
-    pixel.samples = {};
+  if (isWhole(pixel)) {
+    if (side_ > 1) {
+      const Color whole = filtered(pixel);
+      pixel.samples = std::make_unique<Color[]>(1);
+      pixel.samples[0] = whole;
+    }
     if (pixel.full) --rowOf(place).incomplete;
   } else if (id.cell != pixel.firstCell) {
     return;  // nothing is known that was not known before
@@ -242,12 +251,20 @@ void Sampler::supply(const SampleId& id, Color color) {
   if (guessing_) guessAround(place);
 }
 
+// Always added in the same order: the first sample, then the others by cell.
+Color Sampler::filtered(const Pixel& pixel) const {
+  Color sum = pixel.first * weights_[pixel.firstCell];
+  for (std::size_t cell = 0; cell < weights_.size(); ++cell)
+    if (cell != pixel.firstCell) sum = sum + pixel.samples[cell] * weights_[cell];
+  return sum;
+}
+
 bool Sampler::takeRow(std::vector<Color>& row) {
   if (finished() || rows_.empty() || rows_.front().incomplete != 0) return false;
   // The crosses of the line below may refine this one; below the last line there are none.
   if (refining_ && line_.y <= std::min(firstRow_ + 1, area_.height - 1)) return false;
   row.clear();
-  for (const Pixel& pixel : rows_.front().pixels) row.push_back(pixel.full ? pixel.whole : pixel.first);
+  for (const Pixel& pixel : rows_.front().pixels) row.push_back(pixel.full ? wholeOf(pixel) : pixel.first);
   spare_.push_back(std::move(rows_.front().pixels));
   rows_.pop_front();
   guesses_.erase(guesses_.begin(), guesses_.lower_bound(Place{++firstRow_, 0}));
@@ -278,7 +295,7 @@ bool Sampler::decide(Place centre) {
   for (std::size_t i = 0; i < 5; ++i) {
     const Pixel& pixel = at(cross.places[i]);
     if (!(pixel.full ? isWhole(pixel) : hasFirst(pixel))) return false;
-    colors[i] = pixel.full ? pixel.whole : pixel.first;
+    colors[i] = pixel.full ? wholeOf(pixel) : pixel.first;
   }
   if (!tooMuchContrast(colors, contrast_)) return true;
   changed_ = true;
@@ -302,7 +319,7 @@ void Sampler::guessAround(Place place) {
     std::array<Color, 5> colors;
     const bool known = std::ranges::all_of(cross.places, [&, i = 0u](const Place& p) mutable {
       const Pixel& pixel = at(p);
-      colors[i++] = isWhole(pixel) ? pixel.whole : pixel.first;
+      colors[i++] = isWhole(pixel) ? wholeOf(pixel) : pixel.first;
       return hasFirst(pixel);
     });
     if (!known || !tooMuchContrast(colors, contrast_)) continue;

@@ -19,6 +19,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <memory>
 #include <set>
 #include <span>
 #include <vector>
@@ -43,13 +44,19 @@ void serialize(Archive& archive, SampleId& s) {
 
 // Where and when a sample is taken.
 struct SamplePosition {
-  double u = 0, v = 0;          // on the screen                                     [pixels]
-  double time = 0;              // scene time
-  double lensX = 0, lensY = 0;  // in the square [-1, 1]^2 of the lens
+  double u = 0, v = 0;    // on the screen                                     [pixels]
+  double time = 0;        // scene time
+  std::int32_t side = 1;  // of the pixel, in samples
   std::int32_t number =
       0;            // stratum of lens, time, lights and gloss: column number % side, row number / side
   RandomKey key{};  // of the sample: all that is random about its rays comes from it
 };
+
+// Where the ray of a sample goes through the lens, in the square [-1, 1]^2.
+struct LensPosition {
+  double x = 0, y = 0;
+};
+LensPosition lensPosition(const SamplePosition& at);
 
 // The stratum of a cell; side is 1..8, cell 0..side^2-1.  As in rayshade 4 the numbers start from 1 for sides
 // 6, 7 and 8, so one cell of each pixel has the number side^2, just outside of the square of strata.
@@ -97,12 +104,12 @@ class Sampler {
   bool finished() const { return firstRow_ == area_.height; }
 
  private:
+  // Small: all pixels of a few dozen rows are held, and looked at again and again.
   struct Pixel {
-    Color first;                 // its first sample, which stands for all of it until it is refined
-    Color whole;                 // of all samples, filtered; once all have come
-    std::uint64_t given = 0;     // cells, one bit each
-    std::uint64_t come = 0;      // cells, one bit each
-    std::vector<Color> samples;  // by cell, while they come
+    Color first;                       // its first sample, which stands for all of it until it is refined
+    std::uint64_t given = 0;           // cells, one bit each
+    std::uint64_t come = 0;            // cells, one bit each
+    std::unique_ptr<Color[]> samples;  // by cell, while they come; then all of them, filtered, in one
     std::uint8_t firstCell = 0;
     bool full = false;  // the rule demands all samples
   };
@@ -132,6 +139,7 @@ class Sampler {
   void nextCross();
   void guessAround(Place place);
   Cross crossAt(Place centre) const;
+  Color filtered(const Pixel& pixel) const;
 
   bool held(std::int32_t y) const {
     return y >= firstRow_ && y < firstRow_ + static_cast<std::int32_t>(rows_.size());
@@ -141,6 +149,8 @@ class Sampler {
   static std::uint64_t firstBit(const Pixel& pixel) { return std::uint64_t{1} << pixel.firstCell; }
   static bool hasFirst(const Pixel& pixel) { return (pixel.come & firstBit(pixel)) != 0; }
   bool isWhole(const Pixel& pixel) const { return pixel.come == allCells_; }
+  // The colour of a whole pixel: of one sample it is that.
+  static Color wholeOf(const Pixel& pixel) { return pixel.samples ? pixel.samples[0] : pixel.first; }
 
   PixelArea area_;
   std::int32_t side_;

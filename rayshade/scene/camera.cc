@@ -56,7 +56,9 @@ Ray primaryRay(const View& view, const SamplePosition& at, std::int32_t frame) {
   ray.moment = {at.time, frame};
   ray.sample = at.number;
   ray.key = at.key;
-  const Vec3 lens = at.lensX * view.lensRight + at.lensY * view.lensUp;
+  if (view.lensRight == Vec3{} && view.lensUp == Vec3{}) return ray;
+  const LensPosition through = lensPosition(at);
+  const Vec3 lens = through.x * view.lensRight + through.y * view.lensUp;
   if (lens != Vec3{}) {
     ray.origin = ray.origin + lens;
     ray.direction = normalize(view.focalDistance * ray.direction - lens);

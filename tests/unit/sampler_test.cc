@@ -202,8 +202,9 @@ TEST(SamplePosition, LensPointLiesInTheStratumOfTheNumber) {
   const PictureSpec spec = specOf(64, 64, 3);
   for (std::int32_t cell = 0; cell < 9; ++cell) {
     const SamplePosition at = samplePosition(spec, kSeed, 0, {1, 2, cell});
-    EXPECT_EQ(std::floor((at.lensX + 1) * 1.5), at.number % 3);
-    EXPECT_EQ(std::floor((at.lensY + 1) * 1.5), at.number / 3);
+    const LensPosition lens = lensPosition(at);
+    EXPECT_EQ(std::floor((lens.x + 1) * 1.5), at.number % 3);
+    EXPECT_EQ(std::floor((lens.y + 1) * 1.5), at.number / 3);
   }
 }
 
