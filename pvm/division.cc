@@ -11,7 +11,7 @@ namespace {
 // A cell is what is fetched at a time: small enough to be a part, large enough to be worth a message.
 constexpr std::uint64_t kObjectsPerCell = 8192;
 // Where nothing is fetched, cells only say where there is anything.
-constexpr std::uint64_t kObjectsPerBox = 16, kMostBoxes = 4096;
+constexpr std::uint64_t kObjectsPerBox = 4, kMostBoxes = 4096;
 
 }  // namespace
 

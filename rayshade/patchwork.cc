@@ -112,8 +112,7 @@ void Patchwork::obstruct(PatchSource& source, std::span<Segment> segments, std::
   if (boxes_.size() == 1) {
     if (const Ground ground = source.patch(0, segments.size()); ground.region != nullptr) {
       Obstruction met[kBundleSize];
-      std::uint32_t occluder = kNone;
-      obstructionTogether(*ground.model, *ground.region, segments, met, occluder);
+      obstructionTogether(*ground.model, *ground.region, segments, met);
       counts.visits += segments.size();
       for (std::size_t i = 0; i < segments.size(); ++i) {
         counts.tests += met[i].tests;
@@ -124,7 +123,7 @@ void Patchwork::obstruct(PatchSource& source, std::span<Segment> segments, std::
   }
   std::vector<Missing> missing;
   RaySet dark = 0, filtered = 0;
-  bvh_.any(segments, allRays(segments.size()), [&](std::uint32_t first, std::uint32_t count, RaySet asking) {
+  bvh_.any(segments, [&](std::uint32_t first, std::uint32_t count, RaySet asking) {
     for (const std::uint32_t patch : bvh_.order().subspan(first, count)) {
       const RaySet left = asking & ~dark;
       if (left == 0) break;
@@ -135,8 +134,7 @@ void Patchwork::obstruct(PatchSource& source, std::span<Segment> segments, std::
       }
       Part part(segments, left);
       Obstruction met[kBundleSize];
-      std::uint32_t occluder = kNone;
-      obstructionTogether(*ground.model, *ground.region, part.rays(), met, occluder);
+      obstructionTogether(*ground.model, *ground.region, part.rays(), met);
       counts.visits += part.size;
       for (std::size_t k = 0; k < part.size; ++k) {
         counts.tests += met[k].tests;

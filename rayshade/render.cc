@@ -50,8 +50,7 @@ namespace {
 // Traces rays by recursion, a bundle at a time: neighbouring samples with each other, and so what comes of them.
 class Tracer {
  public:
-  Tracer(const Scene& scene, TraceCounts& counts)
-      : scene_(scene), setting_(scene.setting), counts_(counts), occluders_(setting_.lights.size(), kNone) {}
+  Tracer(const Scene& scene, TraceCounts& counts) : scene_(scene), setting_(scene.setting), counts_(counts) {}
 
   // What each of at most kBundleSize rays sees.
   void trace(std::span<const Ray> rays, std::span<Color> seen) { trace(rays, seen, 0); }
@@ -163,14 +162,14 @@ class Tracer {
                   lightQuery(shaded[i].point.position, ray.key, ray.sample, number, setting_), point);
               states[i] = lit(light, samples[i], shaded[i].point, setting_);
             }
-            addLightPoint(shaded, light.color, samples, states, occluders_[number]);
+            addLightPoint(shaded, light.color, samples, states);
           }
         },
         light.kind);
   }
 
   void addLightPoint(std::span<Shaded> shaded, Color color, std::span<const LightSample> samples,
-                     std::span<const Lit> states, std::uint32_t& occluder) {
+                     std::span<const Lit> states) {
     Segment segments[kBundleSize];
     std::size_t from[kBundleSize];  // which hit asks
     std::size_t count = 0;
@@ -184,7 +183,7 @@ class Tracer {
     std::fill_n(through, shaded.size(), kWhite);
     counts_.shadowRays += count;
     if (scene_.undivided()) {
-      pass(shaded, samples, std::span(segments).first(count), from, through, occluder);
+      pass(shaded, samples, std::span(segments).first(count), from, through);
     } else {
       for (std::size_t k = 0; k < count; ++k) {
         const std::size_t i = from[k];
@@ -205,11 +204,11 @@ class Tracer {
 
   // Takes shadow rays to their lights; `through` of the hit that asks becomes what arrives.
   void pass(std::span<const Shaded> shaded, std::span<const LightSample> samples, std::span<Segment> segments,
-            std::span<const std::size_t> from, std::span<Color> through, std::uint32_t& occluder) {
+            std::span<const std::size_t> from, std::span<Color> through) {
     if (segments.empty()) return;
     counts_.visits += segments.size();
     Obstruction met[kBundleSize];
-    obstructionTogether(scene_.model, scene_.space(), segments, met, occluder);
+    obstructionTogether(scene_.model, scene_.space(), segments, met);
     std::vector<ShadowRay> filtered;  // those that have a transparent surface before them
     std::size_t asking[kBundleSize];
     for (std::size_t k = 0; k < segments.size(); ++k) {
@@ -267,8 +266,6 @@ class Tracer {
   const Setting& setting_;
   TraceCounts& counts_;
   std::vector<std::unique_ptr<Stage>> stages_;  // by depth
-  std::vector<std::uint32_t>
-      occluders_;  // by light: what stopped the last shadow ray, see obstructionTogether()
 };
 
 }  // namespace

@@ -76,31 +76,20 @@ void visitTogether(const Model& model, const Region& region, std::span<Segment> 
 
 RAYSHADE_FOR_THIS_PROCESSOR
 void obstructionTogether(const Model& model, const Region& region, std::span<Segment> segments,
-                         std::span<Obstruction> met, std::uint32_t& occluder) {
+                         std::span<Obstruction> met) {
   Testers testers(model, segments);
   std::fill_n(met.begin(), segments.size(), Obstruction{});
-  RaySet open = allRays(segments.size()), filtered = 0;  // filtered: has met something transparent
-  const auto ask = [&](std::uint32_t position, RaySet asking) {
+  RaySet filtered = 0;  // has met something transparent
+  region.bvh.any(segments, [&](std::uint32_t first, std::uint32_t count, RaySet asking) {
     RaySet stopped = 0;
-    const Target& target = region.objects[position];
-    // Another transparent thing tells nothing new.
-    testers.test(target, asking & ~(target.opaque ? 0 : filtered), [&](std::size_t i, double t) {
-      ++met[i].tests;
-      if (t < segments[i].tMax) (target.opaque ? stopped : filtered) |= RaySet{1} << i;
-    });
-    if (stopped != 0) occluder = position;
+    for (const Target& target : std::span(region.objects).subspan(first, count)) {
+      // Another transparent thing tells nothing new.
+      testers.test(target, asking & ~stopped & ~(target.opaque ? 0 : filtered), [&](std::size_t i, double t) {
+        ++met[i].tests;
+        if (t < segments[i].tMax) (target.opaque ? stopped : filtered) |= RaySet{1} << i;
+      });
+    }
     forEachRay(stopped, [&](std::size_t i) { met[i].opaque = true; });
-    return stopped;
-  };
-  if (occluder < region.objects.size()) {
-    const std::uint32_t first = std::exchange(occluder, kNone);  // unless it stops a ray again
-    open &= ~ask(first, open);
-    if (open == 0) return;
-  }
-  region.bvh.any(segments, open, [&](std::uint32_t first, std::uint32_t count, RaySet asking) {
-    RaySet stopped = 0;
-    for (std::uint32_t position = first; position < first + count; ++position)
-      stopped |= ask(position, asking & ~stopped);
     return stopped;
   });
   forEachRay(filtered, [&](std::size_t i) { met[i].transparent = true; });

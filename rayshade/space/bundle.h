@@ -28,9 +28,8 @@ struct Segment : RayQuery {
 void visitTogether(const Model& model, const Region& region, std::span<Segment> segments,
                    std::span<Hit> hits);
 
-// obstruction() for each of at most kBundleSize segments.  `occluder`: the position in region.objects of what stopped a
-// ray to the same light before, or kNone; it is asked first, which can't change the answer.
+// obstruction() for each of at most kBundleSize segments.
 void obstructionTogether(const Model& model, const Region& region, std::span<Segment> segments,
-                         std::span<Obstruction> met, std::uint32_t& occluder);
+                         std::span<Obstruction> met);
 
 }  // namespace rayshade

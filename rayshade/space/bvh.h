@@ -37,9 +37,6 @@ struct RayQuery {
 using RaySet = std::uint32_t;
 inline constexpr std::size_t kBundleSize = 32;
 
-// The first `count` of them.
-constexpr RaySet allRays(std::size_t count) { return static_cast<RaySet>((std::uint64_t{1} << count) - 1); }
-
 template <class Use>
 void forEachRay(RaySet rays, Use&& use) {
   for (; rays != 0; rays &= rays - 1) use(static_cast<std::size_t>(std::countr_zero(rays)));
@@ -77,12 +74,12 @@ class Bvh {
   // Calls leaf(first, count, rays), which answers with the rays whose tMax it has lowered.  Include bvh_bundle.h.
   template <class Query, class Leaf>
   [[gnu::always_inline]] inline void nearest(std::span<Query> bundle, Leaf&& leaf) const {
-    traverseTogether<true>(bundle, allRays(bundle.size()), leaf);
+    traverseTogether<true>(bundle, leaf);
   }
-  // Here leaf(first, count, rays) answers with the rays that have found what they look for.  Only those of `waiting` look.
+  // Here leaf(first, count, rays) answers with the rays that have found what they look for.
   template <class Query, class Leaf>
-  [[gnu::always_inline]] inline void any(std::span<Query> bundle, RaySet waiting, Leaf&& leaf) const {
-    traverseTogether<false>(bundle, waiting, leaf);
+  [[gnu::always_inline]] inline void any(std::span<Query> bundle, Leaf&& leaf) const {
+    traverseTogether<false>(bundle, leaf);
   }
 
  private:
@@ -194,8 +191,7 @@ class Bvh {
   template <bool kSorted, class Leaf>
   bool traverseFrom(std::uint32_t top, BoxRay& ray, const double& tMax, Leaf&& leaf) const;
   template <bool kSorted, class Query, class Leaf>
-  [[gnu::always_inline]] inline void traverseTogether(std::span<Query> bundle, RaySet waiting,
-                                                      Leaf&& leaf) const;
+  [[gnu::always_inline]] inline void traverseTogether(std::span<Query> bundle, Leaf&& leaf) const;
   // Rays that enter, and those that must be tested against everything.
   struct Entered {
     RaySet inside, everything;

@@ -106,7 +106,8 @@ Bvh::Entered Bvh::enterTogether(std::span<const Query> bundle, BoxRays& rays) co
 }
 
 template <bool kSorted, class Query, class Leaf>
-void Bvh::traverseTogether(std::span<Query> bundle, RaySet waiting, Leaf&& leaf) const {
+void Bvh::traverseTogether(std::span<Query> bundle, Leaf&& leaf) const {
+  RaySet waiting = static_cast<RaySet>((std::uint64_t{1} << bundle.size()) - 1);
   const auto visitLeaf = [&](std::uint32_t first, std::uint32_t count, RaySet asking) {
     const RaySet answer = leaf(first, count, asking);
     if constexpr (!kSorted) waiting &= ~answer;
@@ -125,7 +126,7 @@ void Bvh::traverseTogether(std::span<Query> bundle, RaySet waiting, Leaf&& leaf)
   };
   Open stack[kStackSize];
   for (std::uint32_t octant = 0; octant < 8; ++octant) {
-    RaySet going = entered.inside & waiting;
+    RaySet going = entered.inside;
     for (int axis = 0; axis < 3; ++axis)
       going &= (octant >> axis & 1) != 0 ? rays.negative[axis] : ~rays.negative[axis];
     if (going == 0) continue;

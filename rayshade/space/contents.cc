@@ -35,7 +35,7 @@ Contents::Contents(const BinTree& tree, std::span<const Bounds> cells,
 RAYSHADE_FOR_THIS_PROCESSOR
 RaySet Contents::mayMeetOthers(std::span<Segment> segments) const {
   RaySet meeting = 0;
-  others_.any(segments, allRays(segments.size()), [&](std::uint32_t, std::uint32_t, RaySet rays) {
+  others_.any(segments, [&](std::uint32_t, std::uint32_t, RaySet rays) {
     meeting |= rays;
     return rays;
   });
