@@ -54,14 +54,13 @@ RaySet Patchwork::unsettled(std::span<const Missing> missing, std::span<const Se
   return rays;
 }
 
-RAYSHADE_FOR_THIS_PROCESSOR
 void Patchwork::visit(PatchSource& source, std::span<Segment> segments, std::span<const double> begin,
-                      std::span<Found> found, TraceCounts& counts) const {
+                      std::span<Found> found, TraceCounts& counts, Processor processor) const {
   std::fill_n(found.begin(), segments.size(), Found{});
   if (boxes_.size() == 1) {  // no need to look for it
     if (const Ground ground = source.patch(0, segments.size()); ground.region != nullptr) {
       Hit hits[kBundleSize];
-      visitTogether(*ground.model, *ground.region, segments, hits);
+      visitTogether(*ground.model, *ground.region, segments, hits, processor);
       counts.visits += segments.size();
       for (std::size_t i = 0; i < segments.size(); ++i) {
         counts.tests += hits[i].tests;
@@ -71,48 +70,50 @@ void Patchwork::visit(PatchSource& source, std::span<Segment> segments, std::spa
     }
   }
   std::vector<Missing> missing;
-  bvh_.nearest(segments, [&](std::uint32_t first, std::uint32_t count, RaySet asking) {
-    RaySet nearer = 0;
-    for (const std::uint32_t patch : bvh_.order().subspan(first, count)) {
-      const Ground ground = source.patch(patch, static_cast<std::size_t>(std::popcount(asking)));
-      if (ground.region == nullptr) {
-        missing.push_back({patch, asking});
-        continue;
-      }
-      Part part(segments, asking);
-      // What was found elsewhere at the same t may have to give way.
-      for (std::size_t k = 0; k < part.size; ++k)
-        if (found[part.from[k]].hit.found())
-          part.segments[k].tMax = std::nextafter(part.segments[k].tMax, kInfinity);
-      Hit hits[kBundleSize];
-      visitTogether(*ground.model, *ground.region, part.rays(), hits);
-      counts.visits += part.size;
-      for (std::size_t k = 0; k < part.size; ++k) {
-        const std::size_t i = part.from[k];
-        counts.tests += hits[k].tests;
-        Found& best = found[i];
-        if (!hits[k].found()) continue;
-        if (hits[k].t == best.hit.t && precedence(ground.model->store().object(hits[k].object)) >=
-                                           precedence(best.model->store().object(best.hit.object)))
+  const auto visitPatches = [&]() RAYSHADE_INLINE {
+    bvh_.nearest(segments, [&](std::uint32_t first, std::uint32_t count, RaySet asking) {
+      RaySet nearer = 0;
+      for (const std::uint32_t patch : bvh_.order().subspan(first, count)) {
+        const Ground ground = source.patch(patch, static_cast<std::size_t>(std::popcount(asking)));
+        if (ground.region == nullptr) {
+          missing.push_back({patch, asking});
           continue;
-        best.hit = hits[k];
-        best.model = ground.model;
-        segments[i].tMax = hits[k].t;
-        nearer |= RaySet{1} << i;
+        }
+        Part part(segments, asking);
+        // What was found elsewhere at the same t may have to give way.
+        for (std::size_t k = 0; k < part.size; ++k)
+          if (found[part.from[k]].hit.found())
+            part.segments[k].tMax = std::nextafter(part.segments[k].tMax, kInfinity);
+        Hit hits[kBundleSize];
+        visitTogether(*ground.model, *ground.region, part.rays(), hits, processor);
+        counts.visits += part.size;
+        for (std::size_t k = 0; k < part.size; ++k) {
+          const std::size_t i = part.from[k];
+          counts.tests += hits[k].tests;
+          Found& best = found[i];
+          if (!hits[k].found()) continue;
+          if (hits[k].t == best.hit.t && precedence(ground.model->store().object(hits[k].object)) >=
+                                             precedence(best.model->store().object(best.hit.object)))
+            continue;
+          best.hit = hits[k];
+          best.model = ground.model;
+          segments[i].tMax = hits[k].t;
+          nearer |= RaySet{1} << i;
+        }
       }
-    }
-    return nearer;
-  });
+      return nearer;
+    });
+  };
+  onProcessor(processor, visitPatches);
   forEachRay(unsettled(missing, segments, begin), [&](std::size_t i) { found[i].settled = false; });
 }
 
-RAYSHADE_FOR_THIS_PROCESSOR
 void Patchwork::obstruct(PatchSource& source, std::span<Segment> segments, std::span<const double> begin,
-                         std::span<Light> light, TraceCounts& counts) const {
+                         std::span<Light> light, TraceCounts& counts, Processor processor) const {
   if (boxes_.size() == 1) {
     if (const Ground ground = source.patch(0, segments.size()); ground.region != nullptr) {
       Obstruction met[kBundleSize];
-      obstructionTogether(*ground.model, *ground.region, segments, met);
+      obstructionTogether(*ground.model, *ground.region, segments, met, processor);
       counts.visits += segments.size();
       for (std::size_t i = 0; i < segments.size(); ++i) {
         counts.tests += met[i].tests;
@@ -123,27 +124,30 @@ void Patchwork::obstruct(PatchSource& source, std::span<Segment> segments, std::
   }
   std::vector<Missing> missing;
   RaySet dark = 0, filtered = 0;
-  bvh_.any(segments, [&](std::uint32_t first, std::uint32_t count, RaySet asking) {
-    for (const std::uint32_t patch : bvh_.order().subspan(first, count)) {
-      const RaySet left = asking & ~dark;
-      if (left == 0) break;
-      const Ground ground = source.patch(patch, static_cast<std::size_t>(std::popcount(left)));
-      if (ground.region == nullptr) {
-        missing.push_back({patch, left});
-        continue;
+  const auto visitPatches = [&]() RAYSHADE_INLINE {
+    bvh_.any(segments, [&](std::uint32_t first, std::uint32_t count, RaySet asking) {
+      for (const std::uint32_t patch : bvh_.order().subspan(first, count)) {
+        const RaySet left = asking & ~dark;
+        if (left == 0) break;
+        const Ground ground = source.patch(patch, static_cast<std::size_t>(std::popcount(left)));
+        if (ground.region == nullptr) {
+          missing.push_back({patch, left});
+          continue;
+        }
+        Part part(segments, left);
+        Obstruction met[kBundleSize];
+        obstructionTogether(*ground.model, *ground.region, part.rays(), met, processor);
+        counts.visits += part.size;
+        for (std::size_t k = 0; k < part.size; ++k) {
+          counts.tests += met[k].tests;
+          if (met[k].opaque) dark |= RaySet{1} << part.from[k];
+          if (met[k].transparent) filtered |= RaySet{1} << part.from[k];
+        }
       }
-      Part part(segments, left);
-      Obstruction met[kBundleSize];
-      obstructionTogether(*ground.model, *ground.region, part.rays(), met);
-      counts.visits += part.size;
-      for (std::size_t k = 0; k < part.size; ++k) {
-        counts.tests += met[k].tests;
-        if (met[k].opaque) dark |= RaySet{1} << part.from[k];
-        if (met[k].transparent) filtered |= RaySet{1} << part.from[k];
-      }
-    }
-    return asking & dark;
-  });
+      return asking & dark;
+    });
+  };
+  onProcessor(processor, visitPatches);
   for (Missing& m : missing) m.rays &= ~(dark | filtered);
   const RaySet uncertain = unsettled(missing, segments, begin);
   for (std::size_t i = 0; i < segments.size(); ++i) {

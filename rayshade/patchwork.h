@@ -33,7 +33,7 @@ class Patchwork {
   // The nearest hits of at most kBundleSize segments, whose tMax become the t of the hits.  What is not here counts
   // from `begin[i]` on.
   void visit(PatchSource& source, std::span<Segment> segments, std::span<const double> begin,
-             std::span<Found> found, TraceCounts& counts) const;
+             std::span<Found> found, TraceCounts& counts, Processor processor = thisProcessor()) const;
 
   enum class Light : std::uint8_t {
     dark,      // something opaque is before it
@@ -43,7 +43,7 @@ class Patchwork {
   };
   // What becomes of at most kBundleSize shadow rays.
   void obstruct(PatchSource& source, std::span<Segment> segments, std::span<const double> begin,
-                std::span<Light> light, TraceCounts& counts) const;
+                std::span<Light> light, TraceCounts& counts, Processor processor = thisProcessor()) const;
 
  private:
   struct Missing {

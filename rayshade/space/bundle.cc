@@ -48,51 +48,54 @@ class Testers {
 
 }  // namespace
 
-RAYSHADE_FOR_THIS_PROCESSOR
-void visitTogether(const Model& model, const Region& region, std::span<Segment> segments,
-                   std::span<Hit> hits) {
-  Testers testers(model, segments);
-  std::fill_n(hits.begin(), segments.size(), Hit{});
-  region.bvh.nearest(segments, [&](std::uint32_t first, std::uint32_t count, RaySet asking) {
-    RaySet nearer = 0;
-    for (const Target& target : std::span(region.objects).subspan(first, count)) {
-      testers.test(target, asking, [&](std::size_t i, double t) {
-        Hit& best = hits[i];
-        ++best.tests;
-        if (!(t <= segments[i].tMax) || t == kNoHit) return;
-        // At the end of a segment nothing counts but what was found there already.
-        if (t == segments[i].tMax && (!best.found() || precedence(model.store().object(target.object)) >=
-                                                           precedence(model.store().object(best.object))))
-          return;
-        best.t = t;
-        best.object = target.object;
-        segments[i].tMax = t;
-        nearer |= RaySet{1} << i;
-      });
-    }
-    return nearer;
+void visitTogether(const Model& model, const Region& region, std::span<Segment> segments, std::span<Hit> hits,
+                   Processor processor) {
+  onProcessor(processor, [&]() RAYSHADE_INLINE {
+    Testers testers(model, segments);
+    std::fill_n(hits.begin(), segments.size(), Hit{});
+    region.bvh.nearest(segments, [&](std::uint32_t first, std::uint32_t count, RaySet asking) {
+      RaySet nearer = 0;
+      for (const Target& target : std::span(region.objects).subspan(first, count)) {
+        testers.test(target, asking, [&](std::size_t i, double t) {
+          Hit& best = hits[i];
+          ++best.tests;
+          if (!(t <= segments[i].tMax) || t == kNoHit) return;
+          // At the end of a segment nothing counts but what was found there already.
+          if (t == segments[i].tMax && (!best.found() || precedence(model.store().object(target.object)) >=
+                                                             precedence(model.store().object(best.object))))
+            return;
+          best.t = t;
+          best.object = target.object;
+          segments[i].tMax = t;
+          nearer |= RaySet{1} << i;
+        });
+      }
+      return nearer;
+    });
   });
 }
 
-RAYSHADE_FOR_THIS_PROCESSOR
 void obstructionTogether(const Model& model, const Region& region, std::span<Segment> segments,
-                         std::span<Obstruction> met) {
-  Testers testers(model, segments);
-  std::fill_n(met.begin(), segments.size(), Obstruction{});
-  RaySet filtered = 0;  // has met something transparent
-  region.bvh.any(segments, [&](std::uint32_t first, std::uint32_t count, RaySet asking) {
-    RaySet stopped = 0;
-    for (const Target& target : std::span(region.objects).subspan(first, count)) {
-      // Another transparent thing tells nothing new.
-      testers.test(target, asking & ~stopped & ~(target.opaque ? 0 : filtered), [&](std::size_t i, double t) {
-        ++met[i].tests;
-        if (t < segments[i].tMax) (target.opaque ? stopped : filtered) |= RaySet{1} << i;
-      });
-    }
-    forEachRay(stopped, [&](std::size_t i) { met[i].opaque = true; });
-    return stopped;
+                         std::span<Obstruction> met, Processor processor) {
+  onProcessor(processor, [&]() RAYSHADE_INLINE {
+    Testers testers(model, segments);
+    std::fill_n(met.begin(), segments.size(), Obstruction{});
+    RaySet filtered = 0;  // has met something transparent
+    region.bvh.any(segments, [&](std::uint32_t first, std::uint32_t count, RaySet asking) {
+      RaySet stopped = 0;
+      for (const Target& target : std::span(region.objects).subspan(first, count)) {
+        // Another transparent thing tells nothing new.
+        testers.test(target, asking & ~stopped & ~(target.opaque ? 0 : filtered),
+                     [&](std::size_t i, double t) {
+                       ++met[i].tests;
+                       if (t < segments[i].tMax) (target.opaque ? stopped : filtered) |= RaySet{1} << i;
+                     });
+      }
+      forEachRay(stopped, [&](std::size_t i) { met[i].opaque = true; });
+      return stopped;
+    });
+    forEachRay(filtered, [&](std::size_t i) { met[i].transparent = true; });
   });
-  forEachRay(filtered, [&](std::size_t i) { met[i].transparent = true; });
 }
 
 }  // namespace rayshade

@@ -25,11 +25,11 @@ struct Segment : RayQuery {
 };
 
 // visit() for each of at most kBundleSize segments, whose tMax become the t of the hits.
-void visitTogether(const Model& model, const Region& region, std::span<Segment> segments,
-                   std::span<Hit> hits);
+void visitTogether(const Model& model, const Region& region, std::span<Segment> segments, std::span<Hit> hits,
+                   Processor processor = thisProcessor());
 
 // obstruction() for each of at most kBundleSize segments.
 void obstructionTogether(const Model& model, const Region& region, std::span<Segment> segments,
-                         std::span<Obstruction> met);
+                         std::span<Obstruction> met, Processor processor = thisProcessor());
 
 }  // namespace rayshade

@@ -32,12 +32,13 @@ Contents::Contents(const BinTree& tree, std::span<const Bounds> cells,
   others_ = Bvh(ofOthers);
 }
 
-RAYSHADE_FOR_THIS_PROCESSOR
-RaySet Contents::mayMeetOthers(std::span<Segment> segments) const {
+RaySet Contents::mayMeetOthers(std::span<Segment> segments, Processor processor) const {
   RaySet meeting = 0;
-  others_.any(segments, [&](std::uint32_t, std::uint32_t, RaySet rays) {
-    meeting |= rays;
-    return rays;
+  onProcessor(processor, [&]() RAYSHADE_INLINE {
+    others_.any(segments, [&](std::uint32_t, std::uint32_t, RaySet rays) {
+      meeting |= rays;
+      return rays;
+    });
   });
   return meeting;
 }

@@ -29,7 +29,7 @@ class Contents {
   }
 
   // Which of at most kBundleSize rays could meet something in a voxel of others within their segments?
-  RaySet mayMeetOthers(std::span<Segment> segments) const;
+  RaySet mayMeetOthers(std::span<Segment> segments, Processor processor = thisProcessor()) const;
 
  private:
   std::vector<Bvh> voxels_;

@@ -54,27 +54,33 @@ TEST(Bundle, EveryRayFindsWhatItFindsAlone) {
         const double begin = round % 2 == 0 ? 0 : numbers.real(0, 2);
         segments.push_back(Segment(ray, begin, round % 4 < 2 ? kInfinity : begin + numbers.real(0, 12)));
       }
-      std::vector<Hit> hits(rays.size());
-      std::vector<Segment> lowered = segments;
-      visitTogether(scene.model, scene.space(), lowered, hits);
-      std::vector<Obstruction> met(rays.size());
-      std::vector<Segment> unchanged = segments;
-      obstructionTogether(scene.model, scene.space(), unchanged, met);
-      for (std::size_t i = 0; i < rays.size(); ++i) {
-        SCOPED_TRACE(testing::Message() << "seed " << seed << " round " << round << " ray " << i);
-        const Hit alone = visit(scene.model, scene.space(), rays[i], segments[i].tMin, segments[i].tMax);
-        ASSERT_EQ(hits[i].t, alone.t);
-        ASSERT_EQ(hits[i].object, alone.object);
-        ObjectIndex occluder = kNone;
-        const Obstruction one =
-            obstruction(scene.model, scene.space(), rays[i], segments[i].tMin, segments[i].tMax, occluder);
-        ASSERT_EQ(met[i].opaque, one.opaque);
-        if (!one.opaque) {
-          ASSERT_EQ(met[i].transparent, one.transparent);
-          filtered += one.transparent;
+      // What is compiled for lesser processors than this one, too.
+      for (int lesser = 0; lesser <= static_cast<int>(thisProcessor()); ++lesser) {
+        const Processor processor{static_cast<std::uint8_t>(lesser)};
+        std::vector<Hit> hits(rays.size());
+        std::vector<Segment> lowered = segments;
+        visitTogether(scene.model, scene.space(), lowered, hits, processor);
+        std::vector<Obstruction> met(rays.size());
+        std::vector<Segment> unchanged = segments;
+        obstructionTogether(scene.model, scene.space(), unchanged, met, processor);
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+          SCOPED_TRACE(testing::Message()
+                       << "seed " << seed << " round " << round << " ray " << i << " processor " << lesser);
+          ASSERT_EQ(lowered[i].tMax, std::min(hits[i].t, segments[i].tMax));
+          const Hit alone = visit(scene.model, scene.space(), rays[i], segments[i].tMin, segments[i].tMax);
+          ASSERT_EQ(hits[i].t, alone.t);
+          ASSERT_EQ(hits[i].object, alone.object);
+          ObjectIndex occluder = kNone;
+          const Obstruction one =
+              obstruction(scene.model, scene.space(), rays[i], segments[i].tMin, segments[i].tMax, occluder);
+          ASSERT_EQ(met[i].opaque, one.opaque);
+          if (!one.opaque) {
+            ASSERT_EQ(met[i].transparent, one.transparent);
+            filtered += one.transparent;
+          }
+          found += alone.found();
+          stopped += one.opaque;
         }
-        found += alone.found();
-        stopped += one.opaque;
       }
     }
   }
