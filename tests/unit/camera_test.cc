@@ -122,7 +122,8 @@ TEST(Camera, RaysThroughAnyPointOfTheLensMeetInFocus) {
   camera.aperture = 0.3;
   camera.focalDistance = 6;
   const View view = viewOf(camera, screen(40, 30)).value();
-  const Ray middle = primaryRay(view, at(11, 23), 0);
+  camera.aperture = 0;
+  const Ray middle = primaryRay(viewOf(camera, screen(40, 30)).value(), at(11, 23), 0);
   EXPECT_EQ(middle.origin, camera.eye);
   const Vec3 sharp = middle.origin + 6 * middle.direction;
   for (std::uint64_t key = 0; key < 20; ++key) {
