@@ -30,6 +30,8 @@ struct Frustum {
   double growth() const { return (endRadius - radius) / length; }
 
  private:
+  template <bool alongGenerator>
+  double nearest(const LocalRay& ray, double tMin) const;
   double improved(double root, Vec3 from, Vec3 direction, double between) const;
 };
 

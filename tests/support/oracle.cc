@@ -356,13 +356,12 @@ Real awayFrom(const Part& part, const Line<Real>& line, const Real& t) {
   return largerOf(exact::magnitude(site.distance), Real(site.overshoot * site.slope));
 }
 
-// What a bound is multiplied with.  A ray nearly along a generator of a cone has a quadratic of which little is left;
-// the quartics of a blob are sums of many terms, and a touch is taken within their rounding.
+// What a bound is multiplied with.  The quartics of a blob are sums of many terms, and a touch is taken within their
+// rounding.
 template <class Part>
 double conditionOf(const Part&) {
   return 1;
 }
-double conditionOf(const Cone&) { return 4; }
 double conditionOf(const Blob&) { return 8; }
 
 template <class Real, class Part>

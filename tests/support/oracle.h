@@ -5,7 +5,7 @@
 // inside, and leave a surface that was hit the way the renderer leaves it (originOff).
 //
 // Inputs are doubles, so a place is known to about one rounding of the largest number in play.  With u = 2^-53 and
-// M = |origin| + |t| + reach of the shape the bound of a class is b = kBound u M, kBound = 16 as in rayshade/shapes/shape.h (cones 64, blobs 128).
+// M = |origin| + |t| + reach of the shape the bound of a class is b = kBound u M, kBound = 16 as in rayshade/shapes/shape.h (blobs 128).
 // A failure is
 //   phantom   the kernel's t is a point farther than b from the surface, or beyond its rim by more than b / |n.d|
 //   missed    the exact line crosses the surface so that no motion of it by b can undo that - 4 b / |n.d| before and after

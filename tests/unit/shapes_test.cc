@@ -118,6 +118,14 @@ TEST(Cone, A15ParallelToAGeneratorIsASingleHit) {
   ASSERT_EQ(hits.size(), 1u);
   EXPECT_NEAR(hits[0], std::sqrt(0.5), 1e-15);
 }
+TEST(Cone, A15BesideAGeneratorIsNoHit) {
+  // The exact ray stays outside by 5e-16 where it comes nearest: ninety roundings of the largest number in play.
+  const double size = 0x1.ffdf9c552706dp-6;
+  const Cone cone{{{0, 0, 0}, {0, -1, 0}, size, 0, size}};
+  const LocalRay beside{{0x1.46e4001ad95f6p-7, -0x1.66582d7b94p-6, -0x1.3ee610194e3c5p-6},
+                        {0x1.4ab30dabde491p-2, -0x1.6a09e3a996078p-1, -0x1.4212e17d56462p-1}};
+  EXPECT_TRUE(allHits(cone, beside, -1e9).empty());
+}
 TEST(Sphere, A16UnderAStrongScaleAgreesWithTheExactEllipsoid) {
   const Affine place = *scaling({1e6, 1, 1e-6});
   const Vec3 origin{3e6, 0.25, 2e-6}, target{1e5, 0.125, -2.5e-7};  // world
