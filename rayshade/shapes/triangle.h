@@ -38,7 +38,7 @@ struct EdgeTurns {
   EdgeTurns sharpened(const ShearedPoint& pa, const ShearedPoint& pb, const ShearedPoint& pc) const {
     const double width = std::max({std::abs(pa.x), std::abs(pb.x), std::abs(pc.x)});
     const double height = std::max({std::abs(pa.y), std::abs(pb.y), std::abs(pc.y)});
-    constexpr double kClear = 0x1p-4;  // no more than four bits are lost
+    constexpr double kClear = 0x1p-3;  // no more than three bits are lost
     if (std::abs(sum()) > kClear * width * height) [[likely]]
       return *this;
     EdgeTurns sharp = *this;

@@ -435,12 +435,26 @@ double bluntness(const S&, Vec3) {  // flat
   return kInfinity;
 }
 
+// How far the normal turns when the corners of a needle move by an error: a direction that is nearer to its plane goes to
+// the one side by the kernel and to the other by the exact normal, and then the exact ray comes back as well.
+double tilt(const Triangle& t, double error) {
+  const Vec3 a = t.corners[1] - t.corners[0], b = t.corners[2] - t.corners[0];
+  return error * std::max({length(a), length(b), length(b - a)}) / length(cross(a, b));
+}
+double tilt(const PhongTriangle& t, double error) { return tilt(t.face, error); }
+double tilt(const TriangleUv& t, double error) { return tilt(t.phong, error); }
+template <class S>
+double tilt(const S&, double) {  // normals that are given, or those of round things
+  return 0;
+}
+
 // A hit, and a ray that leaves it.
 template <class S>
 struct Leaving {
   ShapePoint at;
   LocalRay ray;
   double error = 0, slope = 0, bluntness = 0;
+  double tilt = 0;
   double blur = 0;   // how well it is known where the ray met the surface
   bool away = true;  // to the outer side
   std::vector<double> roots;
@@ -458,6 +472,7 @@ struct Leaving {
     ray.origin = originOff(point, ray.direction);
     slope = std::abs(dot(n, ray.direction));
     bluntness = rayshade::bluntness(shape, at.position);
+    tilt = rayshade::tilt(shape, at.error);
     blur = error + kBound * kUnit * (maxAbs(from.origin) + std::abs(t));
     away = dot(n, ray.direction) >= 0;
     roots = rootsOf(shape, ray);
@@ -479,9 +494,10 @@ Verdict judgeLeaving(const std::vector<Part>& parts, const Leaving<S>& leaving) 
   if (off > Real(leaving.at.error)) verdict.fault = Fault::pointOff;
   if (leaving.roots.empty() || leaving.bluntness < 64 * leaving.blur) return verdict;
   const double first = leaving.roots[0];
-  bool again = kConvex<S> && (!kSolid<S> || leaving.away);
-  if (!again && first * leaving.slope <= 64 * leaving.error &&
-      first <= 64 * std::sqrt(leaving.error * leaving.bluntness)) {
+  const bool sideless = leaving.slope < leaving.tilt;
+  bool again = kConvex<S> && (!kSolid<S> || leaving.away) && !sideless;
+  if (!again && (sideless || (first * leaving.slope <= 64 * leaving.error &&
+                              first <= 64 * std::sqrt(leaving.error * leaving.bluntness)))) {
     again = true;
     const Line<Real> line(leaving.ray);
     for (const Part& part : parts)

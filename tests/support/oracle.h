@@ -12,7 +12,8 @@
 //             it is b away from the surface, on different sides, and the rim is as far - and the kernel says nothing there
 //   pointOff  pointAt() is farther from the surface (its rim aside) than the error that it states
 //   selfHit   a ray that leaves a surface meets it again at once, where the exact ray meets nothing; not asked where the
-//             surface is more curved than the place of the hit is known
+//             surface is more curved than the place of the hit is known; along a needle, whose normal has no more digits,
+//             the exact ray may meet it as well
 //   leak      a ray passes through a fan of triangles that winds around it          (no allowance but at the outer rim)
 //   lost      a box, voxel or cell that the exact ray touches is not visited        (no allowance at all)
 //   border    a voxel is left at a t that is off by more than two roundings
