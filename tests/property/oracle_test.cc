@@ -46,6 +46,12 @@ TEST(OracleAgain, Needles) {
   expectNoFault("triangle", kFlat);
 }
 
+// Rays that leave a height field in a fold, where they start on the other face.
+TEST(OracleAgain, Folds) {
+  constexpr Found kCases[] = {{7, 1778191}, {7, 1805076}, {7, 4362079}, {7, 7872842}};
+  expectNoFault("heightfield", kCases);
+}
+
 INSTANTIATE_TEST_SUITE_P(Of, Oracle, testing::ValuesIn(oracleClasses().begin(), oracleClasses().end()),
                          [](const auto& info) { return std::string(info.param); });
 

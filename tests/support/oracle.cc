@@ -500,9 +500,12 @@ Verdict judgeLeaving(const std::vector<Part>& parts, const Leaving<S>& leaving) 
                               first <= 64 * std::sqrt(leaving.error * leaving.bluntness)))) {
     again = true;
     const Line<Real> line(leaving.ray);
-    for (const Part& part : parts)
+    for (const Part& part : parts) {
+      // The ray starts twice the error off the face that it leaves: what is nearer than one is another, in a fold.
+      if (awayFrom(part, line, Real(first)) <= Real(leaving.error)) again = false;
       for (const Real& t : crossings(part, line))
         if (8 * t >= Real(first) && t <= Real(8 * first)) again = false;
+    }
   }
   if (again) verdict = {Fault::selfHit, first, 0, verdict.questions};
   return verdict;
