@@ -12,6 +12,20 @@ constexpr double kBytesPerForward = 130;
 // How many pyramids or bundles are expected to use a cell once it is here, if it stays: neighbours go the same way.
 constexpr double kExpectedUses = 64;
 
+// Does this part of a ray lie well inside of a box?  As the box is convex, its ends tell; it may say no too often.
+bool staysInside(const Bounds& box, const Segment& segment) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const double origin = segment.ray.origin[axis], direction = segment.ray.direction[axis];
+    for (const double t : {segment.tMin, segment.tMax}) {
+      const double step = direction == 0 ? 0 : t * direction, at = origin + step;
+      const double error = 4 * kRounding * (std::abs(origin) + std::abs(step));
+      if (std::isfinite(box.low[axis]) && !(at - error > box.low[axis])) return false;
+      if (std::isfinite(box.high[axis]) && !(at + error < box.high[axis])) return false;
+    }
+  }
+  return true;
+}
+
 }  // namespace
 
 void RayWorker::begin(TaskId host, Configure&& message, std::uint32_t cluster, std::uint32_t finder) {
@@ -46,6 +60,14 @@ void RayWorker::layPatches(std::span<const Bounds> cellContents) {
   patches_.clear();
   std::vector<Bounds> boxes;
   const BinTree& tree = at_.tree;
+  onlyVoxel_.reset();
+  std::uint32_t ownVoxels = 0;
+  for (std::uint32_t voxel = 0; own_ != nullptr && voxel < voxelCount(tree); ++voxel) {
+    if (at_.ownerOf(VoxelId{voxel}) != desk_.link.self()) continue;
+    onlyVoxel_ = boundsOf(tree, VoxelId{voxel});
+    ++ownVoxels;
+  }
+  if (ownVoxels != 1) onlyVoxel_.reset();
   knowsOthers_ = own_ == nullptr || fetches();
   for (std::uint32_t cell = 0; cell < cellCount(tree); ++cell) {
     const Bounds& box = cellContents[cell];
@@ -115,8 +137,20 @@ void RayWorker::visit(std::span<const RayTask> rays, std::span<Patchwork::Found>
 }
 
 RaySet RayWorker::mayLeave(std::span<Segment> segments, std::span<const double> begin) const {
-  for (std::size_t i = 0; i < segments.size(); ++i) segments[i].tMin = std::max(segments[i].tMin, begin[i]);
-  return at_.contents.mayMeetOthers(segments);
+  Segment leaving[kBundleSize];
+  std::size_t from[kBundleSize], count = 0;
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    Segment& segment = segments[i];
+    segment.tMin = std::max(segment.tMin, begin[i]);
+    if (onlyVoxel_ && staysInside(*onlyVoxel_, segment)) continue;
+    leaving[count] = segment;
+    from[count++] = i;
+  }
+  RaySet rays = 0;
+  if (count > 0)
+    forEachRay(at_.contents.mayMeetOthers(std::span(leaving).first(count)),
+               [&](std::size_t k) { rays |= RaySet{1} << from[k]; });
+  return rays;
 }
 
 std::optional<WalkStep<VoxelId>> RayWorker::elsewhere(const LocalRay& ray, double t,

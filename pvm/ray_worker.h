@@ -233,8 +233,9 @@ class RayWorker : public GroundSource, public PatchSource {
     bool mine = false;
   };
   std::vector<PatchPlace> patches_;
-  bool knowsOthers_ = false;      // the cells of others are patches, too
-  bool lookingForLight_ = false;  // for shadow rays, not for others
+  std::optional<Bounds> onlyVoxel_;  // one's own, if there is one only; what lies in it is all here
+  bool knowsOthers_ = false;         // the cells of others are patches, too
+  bool lookingForLight_ = false;     // for shadow rays, not for others
   Patchwork patchwork_;
   std::array<Shading, kBundleSize> shadings_;  // kept: they take memory
   Model noModel_;
