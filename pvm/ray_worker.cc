@@ -243,6 +243,7 @@ void RayWorker::askLight(std::span<const FoundHit> hits, std::size_t point) {
 
 // Takes shadow rays through the transparent surfaces that are here, near to far and all together.
 void RayWorker::filter() {
+  if (filtering_.empty()) return;
   Segment segments[kBundleSize];
   const double begin[kBundleSize] = {};
   Filtering* going[kBundleSize];
