@@ -282,10 +282,7 @@ FrameResult renderFrame(const Scene& scene, const View& view, const PictureSpec&
   while (!sampler.finished()) {
     while (const std::size_t count = sampler.next(samples)) {
       result.counts.primaryRays += count;
-      rays.clear();
-      for (const SampleId& sample : std::span(samples).first(count))
-        rays.push_back(primaryRay(
-            view, samplePosition(picture, seed, static_cast<std::uint32_t>(frame), sample), frame));
+      primaryRays(view, picture, seed, frame, std::span(samples).first(count), rays);
       tracer.trace(rays, seen);
       for (std::size_t i = 0; i < count; ++i) sampler.supply(samples[i], seen[i]);
     }

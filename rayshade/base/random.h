@@ -48,11 +48,15 @@ constexpr RandomKey child(RandomKey key, Branch branch, std::uint32_t index = 0)
 
 // The key of a sample of the picture.  The seed is turned by half its bits, so that frame 1 with seed 2 is not frame 2 with
 // seed 1.
+constexpr RandomKey frameKey(std::uint64_t seed, std::uint32_t frame) {
+  return child(RandomKey{mixBits(std::rotl(seed, 32))}, frame);
+}
+constexpr RandomKey sampleKey(RandomKey frame, std::uint32_t x, std::uint32_t y, std::uint32_t cell) {
+  return child(child(frame, static_cast<std::uint64_t>(y) << 32 | x), cell);
+}
 constexpr RandomKey sampleKey(std::uint64_t seed, std::uint32_t frame, std::uint32_t x, std::uint32_t y,
                               std::uint32_t cell) {
-  RandomKey key = child(RandomKey{mixBits(std::rotl(seed, 32))}, frame);
-  key = child(key, static_cast<std::uint64_t>(y) << 32 | x);
-  return child(key, cell);
+  return sampleKey(frameKey(seed, frame), x, y, cell);
 }
 
 // Uniform in [0, 1), a multiple of 2^-53.  `index` tells apart several numbers of one use.

@@ -56,26 +56,54 @@ std::int32_t sampleNumber(std::int32_t side, std::int32_t cell) {
   return kNumbers[side - 1][static_cast<std::size_t>(cell)];
 }
 
-// The pixel (x, y) is the square of the filter's width around the screen position (x, y), not around its
-// middle: so does rayshade 4.  Without jitter a sample sits in the upper left corner of its cell.
+namespace {
+
+// What the samples of a frame have in common.
+struct SampleGrid {
+  std::int32_t side;
+  bool jitter;
+  double width, cell;  // of the filter, of a cell of a pixel                                        [pixels]
+  double opens, stratum;  // of a sample in time; 0: all are taken when the shutter opens         [scene time]
+  RandomKey key;
+
+  SampleGrid(const PictureSpec& spec, std::uint64_t seed, std::uint32_t frame)
+      : side(spec.samplesPerSide),
+        jitter(spec.jitter),
+        width(spec.filter.width),
+        cell(width / side),
+        opens(spec.startTime + frame * spec.frameLength),
+        stratum(spec.shutter > 0 ? spec.shutter / (side * side) : 0),
+        key(frameKey(seed, frame)) {}
+
+  // The pixel (x, y) is the square of the filter's width around the screen position (x, y), not around its middle: so
+  // does rayshade 4.  Without jitter a sample sits in the upper left corner of its cell.
+  SamplePosition operator()(const SampleId& id) const {
+    SamplePosition at;
+    at.key = sampleKey(key, static_cast<std::uint32_t>(id.x), static_cast<std::uint32_t>(id.y),
+                       static_cast<std::uint32_t>(id.cell));
+    at.side = side;
+    at.number = side == 1 ? 0 : sampleNumber(side, id.cell);
+    auto jittered = [&](Dimension dimension) { return jitter ? uniform(at.key, dimension) : 0.0; };
+    const std::int32_t row = side == 1 ? 0 : id.cell / side, column = id.cell - row * side;
+    at.u = id.x - width / 2 + (column + jittered(Dimension::jitterX)) * cell;
+    at.v = id.y - width / 2 + (row + jittered(Dimension::jitterY)) * cell;
+    at.time = opens;
+    if (stratum > 0) at.time += stratum * (at.number + jittered(Dimension::time));
+    return at;
+  }
+};
+
+}  // namespace
+
 SamplePosition samplePosition(const PictureSpec& spec, std::uint64_t seed, std::uint32_t frame,
                               const SampleId& id) {
-  const std::int32_t side = spec.samplesPerSide;
-  SamplePosition at;
-  at.key = sampleKey(seed, frame, static_cast<std::uint32_t>(id.x), static_cast<std::uint32_t>(id.y),
-                     static_cast<std::uint32_t>(id.cell));
-  at.side = side;
-  at.number = sampleNumber(side, id.cell);
-  auto jitter = [&](Dimension dimension) { return spec.jitter ? uniform(at.key, dimension) : 0.0; };
+  return SampleGrid(spec, seed, frame)(id);
+}
 
-  const double width = spec.filter.width, cell = width / side;
-  const std::int32_t row = id.cell / side, column = id.cell - row * side;
-  at.u = id.x - width / 2 + (column + jitter(Dimension::jitterX)) * cell;
-  at.v = id.y - width / 2 + (row + jitter(Dimension::jitterY)) * cell;
-
-  at.time = spec.startTime + frame * spec.frameLength;
-  if (spec.shutter > 0) at.time += spec.shutter / (side * side) * (at.number + jitter(Dimension::time));
-  return at;
+void samplePositions(const PictureSpec& spec, std::uint64_t seed, std::uint32_t frame,
+                     std::span<const SampleId> ids, std::span<SamplePosition> positions) {
+  const SampleGrid grid(spec, seed, frame);
+  for (std::size_t i = 0; i < ids.size(); ++i) positions[i] = grid(ids[i]);
 }
 
 // The lens is always jittered: without it there would be side^2 sharp pictures on top of each other.
@@ -128,19 +156,19 @@ bool Sampler::give(SampleId& out) {
   if (finished()) return false;
   if (!demanded_.empty()) {
     const Place place = demanded_.front();
-    givePixel(place, out);
-    if (at(place).given == allCells_) demanded_.pop_front();
+    Pixel& pixel = at(place);
+    givePixel(place, pixel, out);
+    if (pixel.given == allCells_) demanded_.pop_front();
     return true;
   }
   if (giveAhead(out)) return true;
   for (; !guesses_.empty(); guesses_.erase(guesses_.begin()))
-    if (givePixel(*guesses_.begin(), out)) return true;
+    if (givePixel(*guesses_.begin(), at(*guesses_.begin()), out)) return true;
   return false;
 }
 
 // The first cell of a pixel that has not been given yet.
-bool Sampler::givePixel(Place place, SampleId& out) {
-  Pixel& pixel = at(place);
+bool Sampler::givePixel(Place place, Pixel& pixel, SampleId& out) {
   if (pixel.given == allCells_) return false;
   const int cell = std::countr_one(pixel.given);
   pixel.given |= std::uint64_t{1} << cell;
@@ -160,7 +188,7 @@ bool Sampler::giveAhead(SampleId& out) {
     Pixel& pixel = at(place);
     const bool idle = place.y == area_.height && (place.x == 0 || place.x == area_.width - 1);
     if (pixel.full) {
-      found = givePixel(place, out);
+      found = givePixel(place, pixel, out);
     } else if (!idle) {
       found = true;
       pixel.given = firstBit(pixel);

@@ -66,6 +66,10 @@ std::int32_t sampleNumber(std::int32_t side, std::int32_t cell);
 SamplePosition samplePosition(const PictureSpec& spec, std::uint64_t seed, std::uint32_t frame,
                               const SampleId& id);
 
+// The same for many samples of one frame; `positions` is as long as `ids`.
+void samplePositions(const PictureSpec& spec, std::uint64_t seed, std::uint32_t frame,
+                     std::span<const SampleId> ids, std::span<SamplePosition> positions);
+
 // The test of adaptive supersampling: colours are linear and unclamped.
 bool tooMuchContrast(std::span<const Color, 5> cross, Color threshold);
 
@@ -130,7 +134,7 @@ class Sampler {
   };
 
   bool give(SampleId& out);
-  bool givePixel(Place place, SampleId& out);
+  bool givePixel(Place place, Pixel& pixel, SampleId& out);
   bool giveAhead(SampleId& out);
   void stepAhead();
   void addRows();

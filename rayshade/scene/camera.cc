@@ -49,6 +49,21 @@ std::optional<View> viewOf(const Camera& camera, const PictureSpec& picture) {
   return view;
 }
 
+namespace {
+
+// Moves a ray from the middle of the lens to where its sample goes through, so that it meets its old self in focus.
+void throughLens(const View& view, const SamplePosition& at, Ray& ray) {
+  const LensPosition through = lensPosition(at);
+  const Vec3 lens = through.x * view.lensRight + through.y * view.lensUp;
+  if (lens == Vec3{}) return;
+  ray.origin = ray.origin + lens;
+  ray.direction = normalize(view.focalDistance * ray.direction - lens);
+}
+
+bool isPinhole(const View& view) { return view.lensRight == Vec3{} && view.lensUp == Vec3{}; }
+
+}  // namespace
+
 Ray primaryRay(const View& view, const SamplePosition& at, std::int32_t frame) {
   Ray ray;
   ray.origin = view.eye;
@@ -56,14 +71,34 @@ Ray primaryRay(const View& view, const SamplePosition& at, std::int32_t frame) {
   ray.moment = {at.time, frame};
   ray.sample = at.number;
   ray.key = at.key;
-  if (view.lensRight == Vec3{} && view.lensUp == Vec3{}) return ray;
-  const LensPosition through = lensPosition(at);
-  const Vec3 lens = through.x * view.lensRight + through.y * view.lensUp;
-  if (lens != Vec3{}) {
-    ray.origin = ray.origin + lens;
-    ray.direction = normalize(view.focalDistance * ray.direction - lens);
-  }
+  if (!isPinhole(view)) throughLens(view, at, ray);
   return ray;
+}
+
+void primaryRays(const View& view, const PictureSpec& picture, std::uint64_t seed, std::int32_t frame,
+                 std::span<const SampleId> samples, std::vector<Ray>& rays) {
+  constexpr std::size_t kAtOnce = 32;
+  const bool pinhole = isPinhole(view);
+  SamplePosition positions[kAtOnce];
+  Vec3 directions[kAtOnce];
+  rays.resize(samples.size());
+  for (std::size_t first = 0; first < samples.size(); first += kAtOnce) {
+    const std::span some = samples.subspan(first, std::min(kAtOnce, samples.size() - first));
+    samplePositions(picture, seed, static_cast<std::uint32_t>(frame), some, positions);
+    // In a loop of its own: the roots and divisions of several rays are on their way at a time.
+    for (std::size_t i = 0; i < some.size(); ++i)
+      directions[i] = normalize(view.first + positions[i].u * view.right + positions[i].v * view.down);
+    for (std::size_t i = 0; i < some.size(); ++i) {
+      Ray& ray = rays[first + i];
+      ray = Ray{};
+      ray.origin = view.eye;
+      ray.direction = directions[i];
+      ray.moment = {positions[i].time, frame};
+      ray.sample = positions[i].number;
+      ray.key = positions[i].key;
+      if (!pinhole) throughLens(view, positions[i], ray);
+    }
+  }
 }
 
 }  // namespace rayshade

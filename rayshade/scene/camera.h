@@ -28,6 +28,10 @@ std::optional<View> viewOf(const Camera& camera, const PictureSpec& picture);
 // The ray of a sample.
 Ray primaryRay(const View& view, const SamplePosition& at, std::int32_t frame);
 
+// The rays of many samples, the same as one by one.  `frame` counts from 0, as for samplePosition().
+void primaryRays(const View& view, const PictureSpec& picture, std::uint64_t seed, std::int32_t frame,
+                 std::span<const SampleId> samples, std::vector<Ray>& rays);
+
 template <class Archive>
 void serialize(Archive& archive, View& v) {
   archive(v.eye, v.first, v.right, v.down, v.lensRight, v.lensUp, v.focalDistance);

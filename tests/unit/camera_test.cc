@@ -145,6 +145,28 @@ TEST(Camera, TheFocusIsOnTheTargetUnlessSaidOtherwise) {
   EXPECT_EQ(viewOf(camera, screen(40, 30)).value().focalDistance, 2);
 }
 
+TEST(Camera, RaysMadeTogetherAreThoseMadeOneByOne) {
+  PictureSpec picture = screen(40, 30);
+  picture.shutter = 0.5;
+  std::vector<Ray> rays(3);  // used before
+  rays[1].depth = 4;
+  rays[1].media.push_back({1.5, 0.9});
+  for (const double aperture : {0.0, 0.2}) {
+    for (const int side : {1, 3}) {
+      picture.samplesPerSide = side;
+      Camera camera;
+      camera.aperture = aperture;
+      const View view = viewOf(camera, picture).value();
+      std::vector<SampleId> samples;
+      for (std::int32_t n = 0; n < 70; ++n) samples.push_back({n % 40, n / 3, n % (side * side)});
+      primaryRays(view, picture, 99, 2, samples, rays);
+      ASSERT_EQ(rays.size(), samples.size());
+      for (std::size_t i = 0; i < rays.size(); ++i)
+        EXPECT_EQ(encode(rays[i]), encode(primaryRay(view, samplePosition(picture, 99, 2, samples[i]), 2)));
+    }
+  }
+}
+
 TEST(Camera, ARayKnowsItsSample) {
   SamplePosition position = at(1, 2);
   position.time = 0.75;
