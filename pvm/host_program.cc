@@ -12,7 +12,7 @@
 #include "pvm/pvm_link.h"
 #include "pvm/task_table.h"
 #include "pvm/virtual_machine.h"
-#include "rayshade/interruption.h"
+#include "rayshade/base/interruption.h"
 #include "rayshade/options.h"
 #include "rayshade/progress.h"
 
@@ -128,7 +128,7 @@ void declareHostOptions(CLI::App& app, HostProgramOptions& o) {
       ->check(CLI::Range(1, 1 << 24))
       ->group(tasks);
   app.add_option("--patience", o.patience,
-                 "seconds of silence after which a task counts as hanging (default: 30)")
+                 "seconds of silence after which a task that renders counts as hanging (default: 30)")
       ->check(CLI::Range(0.1, 1e6))
       ->group(tasks);
   app.add_flag("--plan", o.plan, "render nothing: print which tasks would run where and why")->group(tasks);
@@ -187,11 +187,28 @@ void writeTable(std::FILE* to, const HostSummary& s, std::uint64_t pictureSum) {
   std::fprintf(to, "picture checksum %016" PRIx64 "\n", pictureSum);
 }
 
-void writeTaskTable(const std::string& file, const HostSummary& summary, std::uint64_t pictureSum) {
-  std::ofstream out(file, std::ios::binary);
-  out << taskTable(summary, pictureSum);
-  if (!out.flush()) throw std::runtime_error(file + ": cannot be written");
-}
+// A file for figures, if it has a name.
+class OutputFile {
+ public:
+  explicit OutputFile(const std::string& name) : name_(name) {
+    if (name.empty()) return;
+    file_.reset(std::fopen(name.c_str(), "w"));
+    if (!file_) throw std::runtime_error(name + ": cannot be written");
+  }
+  explicit operator bool() const { return file_ != nullptr; }
+  std::FILE* file() const { return file_.get(); }
+  void close() {
+    if (file_ && (std::ferror(file_.get()) != 0 || std::fclose(file_.release()) != 0))
+      throw std::runtime_error(name_ + ": cannot be written");
+  }
+
+ private:
+  struct Closer {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+  };
+  std::string name_;
+  std::unique_ptr<std::FILE, Closer> file_;
+};
 
 // The first pass: how large the scene is, and what it uses.
 class FirstPass final : public SceneSink {
@@ -260,7 +277,9 @@ int run(HostProgramOptions& options) {
     if (options.render.sixteenBit && formatOf(file) == PictureFormat::png) format = PictureFormat::png16;
     return std::make_unique<PictureWriter>(file, area.width, area.height, head.picture.gamma, format);
   };
-  std::unique_ptr<PictureWriter> writer = open(first);  // before any task is started
+  // Whatever is to be written, before any task is started.
+  std::unique_ptr<PictureWriter> writer = open(first);
+  OutputFile table(options.tableFile), report(reportFile(options.render, head));
 
   VirtualMachine machine(options.machine);
   for (const std::string& host : machine.missingHosts())
@@ -274,6 +293,7 @@ int run(HostProgramOptions& options) {
   options.host.wishes = neededTasks(needs, options.host, hosts).wishes;
   HostTask host(
       link, [&](SceneSink& sink) { parseScene(again, sink); }, survey, head.setting, options.host);
+  const std::int32_t everyRows = rowsBetweenLines(options.render, head);
   Picture sum{area.width, area.height, {}};
   for (std::int32_t frame = first; frame < first + head.picture.frames; ++frame) {
     if (frame != first) writer = open(frame);
@@ -283,19 +303,24 @@ int run(HostProgramOptions& options) {
         [&](const std::vector<Color>& row) {
           writer->row(row);
           appendRow(sum, row);
+          const auto rows = static_cast<std::int32_t>(sum.pixels.size()) / (3 * area.width);
+          if (everyRows > 0 && rows % everyRows == 0) sayLine(rows, area.height, area.width);
         },
-        [&](const HostTask::Progress& p) {
-          checkInterruption();
-          progress.show(p.rows, p.allRows, p.samples, "samples");
-        });
+        [&](const HostTask::Progress& p) { progress.show(p.rows, p.allRows, p.samples, "samples"); });
     writer->finish();
     progress.clear();
     const std::uint64_t pictureSum = checksum(sum);
     sum.pixels.clear();
     if (frame == first + head.picture.frames - 1) {
       const HostSummary summary = host.finish();
-      if (!quiet) writeTable(stderr, summary, pictureSum);
-      if (!options.tableFile.empty()) writeTaskTable(options.tableFile, summary, pictureSum);
+      if (report) {
+        writeTable(report.file(), summary, pictureSum);
+      } else if (!quiet || options.render.verbose) {
+        writeTable(stderr, summary, pictureSum);
+      }
+      if (table) std::fputs(taskTable(summary, pictureSum).c_str(), table.file());
+      report.close();
+      table.close();
     }
   }
   return 0;

@@ -6,6 +6,7 @@
 
 #include "pvm/division.h"
 #include "pvm/task_desk.h"
+#include "rayshade/base/interruption.h"
 
 namespace rayshade {
 namespace {
@@ -240,6 +241,7 @@ void HostTask::handle(const LinkEvent& event) {
 
 // Lets out what has gathered, then takes in what is there; waits up to `patience` seconds for a first event.
 void HostTask::takeEvents(double patience) {
+  checkInterruption();
   outbox_.flush();
   if (auto first = machine_.wait(patience)) {
     handle(*first);

@@ -9,6 +9,7 @@
 #include <pvm3.h>
 #include <sys/socket.h>
 #include <unistd.h>
+#include <csignal>
 
 #include <algorithm>
 #include <cerrno>
@@ -82,6 +83,12 @@ std::string whyNotStarted(int code) {
   }
 }
 
+// A task that hangs may have been stopped, and then a signal that can be waited with does not end it.
+int endProcess(int task) {
+  pvm_kill(task);
+  return pvm_sendsig(task, SIGKILL);
+}
+
 }  // namespace
 
 Command usualCommand(Role role) {
@@ -123,7 +130,7 @@ PvmLink::~PvmLink() {
     bool ended = false;
     for (const auto& [task, peer] : peers_) {
       if (!peer.child || peer.dead || peer.exited) continue;
-      pvm_kill(number(task));
+      endProcess(number(task));
       ended = true;
     }
     const double end = now() + kLastOutputSeconds;
@@ -308,7 +315,7 @@ Spawned PvmLink::spawn(Role role, const std::string& host) {
   return {task, ""};
 }
 
-void PvmLink::kill(TaskId task) { check(pvm_kill(number(task)), "kill"); }
+void PvmLink::kill(TaskId task) { check(endProcess(number(task)), "kill"); }
 
 void PvmLink::take(int buffer) {
   int bytes = 0, tag = 0, sender = 0;

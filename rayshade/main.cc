@@ -4,7 +4,7 @@
 
 #include <cinttypes>
 
-#include "rayshade/interruption.h"
+#include "rayshade/base/interruption.h"
 #include "rayshade/options.h"
 #include "rayshade/progress.h"
 #include "rayshade/render.h"
@@ -76,11 +76,7 @@ int run(const Options& options) {
   const bool quiet = options.quiet || head.report.quiet;
   const bool report =
       options.verbose || !options.verboseFile.empty() || (head.report.wanted && head.report.verbose);
-  // As in rayshade: lines that stay, when they were asked for.
-  const std::int32_t everyRows = quiet                 ? 0
-                                 : options.reportEvery ? std::max(1, *options.reportEvery)
-                                 : head.report.wanted  ? head.report.everyRows
-                                                       : 0;
+  const std::int32_t everyRows = rowsBetweenLines(options, head);
   const std::int32_t first = head.picture.firstFrame;
   for (std::int32_t frame = first; frame < first + head.picture.frames; ++frame) {
     std::optional<PictureFormat> format = options.format;
@@ -99,9 +95,7 @@ int run(const Options& options) {
           writer.row(row);
           if (report) appendRow(sum, row);
           ++rows;
-          if (everyRows > 0 && rows % everyRows == 0)
-            std::fprintf(stderr, "finished line %d of %d (%" PRIu64 " pixels)\n", rows, area.height,
-                         static_cast<std::uint64_t>(rows) * static_cast<std::uint64_t>(area.width));
+          if (everyRows > 0 && rows % everyRows == 0) sayLine(rows, area.height, area.width);
           progress.show(rows, area.height,
                         static_cast<std::uint64_t>(rows) * static_cast<std::uint64_t>(area.width), "pixels");
         });
@@ -109,9 +103,9 @@ int run(const Options& options) {
     times.trace = lap();
     progress.clear();
     if (!report) continue;
-    const std::string reportFile = options.verboseFile.empty() ? head.report.file : options.verboseFile;
-    std::FILE* to = reportFile.empty() ? stderr : std::fopen(reportFile.c_str(), frame == first ? "w" : "a");
-    if (to == nullptr) throw std::runtime_error(reportFile + ": cannot be written");
+    const std::string reportTo = reportFile(options, head);
+    std::FILE* to = reportTo.empty() ? stderr : std::fopen(reportTo.c_str(), frame == first ? "w" : "a");
+    if (to == nullptr) throw std::runtime_error(reportTo + ": cannot be written");
     writeReport(to, scene, result, times, checksum(sum));
     if (to != stderr) std::fclose(to);
   }

@@ -8,6 +8,22 @@
 
 namespace rayshade {
 
+namespace {
+
+// Not CLI::Range, which lets through what is not a number.
+CLI::Validator within(double low, double high) {
+  const std::string range = CLI::detail::to_string(low) + " to " + CLI::detail::to_string(high);
+  return CLI::Validator(
+      [=](const std::string& text) {
+        double value = 0;
+        const bool good = CLI::detail::lexical_cast(text, value) && value >= low && value <= high;
+        return good ? std::string() : text + " is not a number from " + range;
+      },
+      range);
+}
+
+}  // namespace
+
 void declareOptions(CLI::App& app, Options& o) {
   app.set_help_flag("-h,--help", "show this and leave");
   app.option_defaults()->multi_option_policy(
@@ -36,9 +52,12 @@ void declareOptions(CLI::App& app, Options& o) {
       ->group(picture);
   app.add_option("-X", o.crop, "crop to left right bottom top, shares of the window")
       ->expected(4)
+      ->check(within(0.0, 1.0))
       ->allow_extra_args(false)
       ->group(picture);
-  app.add_option("-G", o.gamma, "gamma of the output (1: linear)")->group(picture);
+  app.add_option("-G", o.gamma, "gamma of the output (1: linear)")
+      ->check(within(0.01, 100.0))
+      ->group(picture);
   app.add_flag("--16", o.sixteenBit, "PNG with 16 bits a channel")->group(picture);
   app.add_flag("-l", o.leftEye, "render the left eye of a stereo pair")->group(picture);
   app.add_flag("-r", o.rightEye, "render the right eye")->group(picture);
@@ -49,10 +68,12 @@ void declareOptions(CLI::App& app, Options& o) {
   app.add_option("-S", o.samples, "samples along each side of a pixel, 1 to 8")->group(quality);
   app.add_option("-T", o.contrast, "contrast r g b above which a pixel gets all of its samples")
       ->expected(3)
+      ->check(within(0.0, 1e9))
       ->allow_extra_args(false)
       ->group(quality);
   app.add_option("-C", o.cutoff, "weight r g b below which no ray is sent")
       ->expected(3)
+      ->check(within(0.0, 1e9))
       ->allow_extra_args(false)
       ->group(quality);
   app.add_option("-D", o.maxDepth, "largest number of reflections and refractions in a row")->group(quality);
@@ -68,7 +89,7 @@ void declareOptions(CLI::App& app, Options& o) {
   app.add_flag("-q", o.quiet, "no progress, no advice")->group(talk);
   app.add_flag("-v", o.verbose, "report at the end")->group(talk);
   app.add_option("-V", o.verboseFile, "report into a file")->group(talk);
-  app.add_option("-F", o.reportEvery, "say how far it is every so many rows")->group(talk);
+  app.add_option("-F", o.reportEvery, "a line that stays every so many rows")->group(talk);
   app.footer("Exit status: 0, 1 for a bad scene or file, 2 for a bad command line.");
 }
 
@@ -121,6 +142,16 @@ void applyOptions(const Options& o, SceneHead& head) {
 std::string sceneName(const Options& options) {
   const std::string& name = options.parse.fileName;
   return name.empty() || name == "-" ? "standard input" : name;
+}
+
+std::int32_t rowsBetweenLines(const Options& options, const SceneHead& head) {
+  if (options.quiet || head.report.quiet) return 0;
+  if (options.reportEvery) return std::max(1, *options.reportEvery);
+  return head.report.wanted ? head.report.everyRows : 0;
+}
+
+std::string reportFile(const Options& options, const SceneHead& head) {
+  return options.verboseFile.empty() ? head.report.file : options.verboseFile;
 }
 
 std::string chooseOutput(const Options& options, const SceneHead& head) {

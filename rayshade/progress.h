@@ -15,6 +15,12 @@ inline double secondsNow() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+// A line that stays, for those who ask for it.
+inline void sayLine(std::int32_t rows, std::int32_t allRows, std::int32_t width) {
+  std::fprintf(stderr, "finished line %d of %d (%lld pixels)\n", rows, allRows,
+               static_cast<long long>(rows) * width);
+}
+
 class ProgressLine {
  public:
   explicit ProgressLine(bool wanted) : shown_(wanted && isatty(STDERR_FILENO)), begin_(secondsNow()) {}

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "rayshade/base/error.h"
+#include "rayshade/base/interruption.h"
 
 namespace rayshade {
 namespace {
@@ -196,6 +197,7 @@ void SceneText::startPreprocessor(const std::string& input, const std::string& a
 }
 
 std::size_t SceneText::read(char* to, std::size_t most) {
+  checkInterruption();  // a scene may be large
   if (messages_ >= 0) return readPreprocessed(to, most);
   const ssize_t got = readSome(text_, to, most);
   if (got < 0) failWith(name_, "cannot be read", errno);
@@ -206,7 +208,10 @@ std::size_t SceneText::readPreprocessed(char* to, std::size_t most) {
   while (!stopped_) {
     std::array<pollfd, 2> waiting{{{text_, POLLIN, 0}, {messages_, POLLIN, 0}}};
     if (::poll(waiting.data(), waiting.size(), -1) < 0) {
-      if (errno == EINTR) continue;
+      if (errno == EINTR) {
+        checkInterruption();
+        continue;
+      }
       failWith(name_, "cpp cannot be waited for", errno);
     }
     if (waiting[1].revents & POLLIN) readMessages();

@@ -166,9 +166,12 @@ TEST_F(Pvm, FramesOfAnAnimationAreThoseOfTheSequentialProgram) {
 
 TEST_F(Pvm, AKilledTaskIsReplacedAndThePictureIsTheSame) {
   const std::string expected = sequential(kLong, "sequential.pfm");
-  for (const char* victim : {"rayshade-voxel-trace", "rayshade-shade"}) {
-    SCOPED_TRACE(victim);
-    const auto host = startHost(std::string("--voxels 3 --shades 2 ") + kLong, "picture.pfm");
+  for (const auto& [victim, shading] : {std::pair{"rayshade-voxel-trace", "separate"},
+                                        {"rayshade-shade", "separate"},
+                                        {"rayshade-voxel-trace", "near"}}) {
+    SCOPED_TRACE(std::string(victim) + " " + shading);
+    const auto host =
+        startHost(std::string("--voxels 3 --shades 2 --shading ") + shading + " " + kLong, "picture.pfm");
     const auto pid = busyTask(victim);
     ASSERT_TRUE(pid.has_value() && host->running()) << "the render was too short";
     kill(*pid, SIGKILL);
@@ -186,8 +189,14 @@ TEST_F(Pvm, AStoppedTaskIsReplacedToo) {
   ASSERT_TRUE(pid.has_value());
   kill(*pid, SIGSTOP);
   const Finished done = host->wait(kPatience);
-  kill(*pid, SIGCONT);  // now it can take notice of its end
   EXPECT_EQ(done.status, 0) << done.errors;
+  bool gone = false;  // although it never went on
+  for (int i = 0; i < 50 && !gone; ++i) {
+    gone = kill(*pid, 0) != 0;
+    if (!gone) usleep(100'000);
+  }
+  EXPECT_TRUE(gone);
+  if (!gone) kill(*pid, SIGKILL);
   EXPECT_TRUE(readText(scratch("picture.pfm")) == expected) << "the pictures differ";
 }
 
