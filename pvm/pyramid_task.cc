@@ -249,7 +249,7 @@ void PyramidTask::followToHorizon(RayTask&& task) {
   if (progress.state == LocalProgress::State::missing) {
     ++forwarded_;
     task.step = progress.step;
-    worker_.sendOn(worker_.at().ownerOf(progress.voxel), task);
+    worker_.forward(worker_.at().ownerOf(progress.voxel), task);
   } else {
     conclude(task, progress);
   }
@@ -280,7 +280,7 @@ void PyramidTask::forward(RayTask task) {
   VoxelWalk walk(worker_.at().tree, task.ray.origin, task.ray.direction);
   WalkStep<VoxelId> first;
   walk.next(first);
-  worker_.sendOn(worker_.at().ownerOf(first.where), task);
+  worker_.forward(worker_.at().ownerOf(first.where), task);
 }
 
 // A secondary ray, which waits for every cell that it needs.

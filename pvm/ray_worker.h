@@ -119,7 +119,7 @@ class RayWorker : public GroundSource, public PatchSource {
   // The colour of a ray; those of samples gather until flush().
   void answer(ReplyTo to, Color color);
   // Sends a ray of this task on to another one.
-  void sendOn(TaskId to, RayTask& task) {
+  void forward(TaskId to, RayTask& task) {
     task.to = outward(task.to);
     desk_.outbox.post(to, task);
   }

@@ -229,7 +229,7 @@ void VoxelTask::trace(std::span<RayTask> tasks) {
     if (!found[i].settled) {
       const LocalRay ray{task.ray.origin, task.ray.direction, 1};
       if (const auto next = worker_.elsewhere(ray, found[i].hit.t, task.step)) {
-        worker_.sendOn(at.ownerOf(next->where), task);
+        worker_.forward(at.ownerOf(next->where), task);
         continue;
       }
       worker_.counts().hits += found[i].hit.found();

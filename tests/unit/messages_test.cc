@@ -135,6 +135,19 @@ TEST(Messages, DamagedPacketsDoNoHarm) {
   feed<ShadeTask>(damaged);
 }
 
+// Only a task itself knows its near hits (near_hits.h): nobody may claim to bring a colour to one.
+TEST(Messages, ARayWithTheAddressOfItsReceiverIsRefused) {
+  NullLink link;
+  VoxelTask task(link);
+  RayTask ray;
+  ray.to = {link.self(), 12345, kReflectedSlot};
+  task.on(TaskId{1}, RayTask(ray));
+  EXPECT_EQ(task.waiting(), 0u);
+  ray.to.task = TaskId{7};
+  task.on(TaskId{1}, RayTask(ray));
+  EXPECT_EQ(task.waiting(), 1u);
+}
+
 TEST(Messages, WorkBeforeTheFirstConfigureIsNotDone) {
   for (const Bytes& original : knownTraffic()) {
     if (original.size() <= kHead) continue;
