@@ -7,7 +7,7 @@
 #   make check-sanitized   the tests of what reads bytes of others or juggles tasks, under clang's sanitizers for
 #                     addresses and undefined behaviour; all tests: make SAN=address,undefined check
 #   make fuzz         the fuzzers, FUZZ_SECONDS each, in the same build tree
-#   make bench        docs/speed-and-error.md: measures error against time (a quarter of an hour)
+#   make bench        docs/speed-and-error.md: measures error against time (a few minutes)
 #   make benches      the other measuring programs into bin/bench/
 #   make bench-embree bin/bench/embree_rate: rays per second beside Embree (Debian: libembree-dev)
 #   make experiments  the schemes of the paper measured over PVM, into docs/experiments/ (20 minutes);
