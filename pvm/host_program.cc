@@ -14,6 +14,7 @@
 #include "pvm/virtual_machine.h"
 #include "rayshade/base/interruption.h"
 #include "rayshade/options.h"
+#include "rayshade/output_file.h"
 #include "rayshade/progress.h"
 
 namespace rayshade {
@@ -187,29 +188,6 @@ void writeTable(std::FILE* to, const HostSummary& s, std::uint64_t pictureSum) {
   std::fprintf(to, "picture checksum %016" PRIx64 "\n", pictureSum);
 }
 
-// A file for figures, if it has a name.
-class OutputFile {
- public:
-  explicit OutputFile(const std::string& name) : name_(name) {
-    if (name.empty()) return;
-    file_.reset(std::fopen(name.c_str(), "w"));
-    if (!file_) throw std::runtime_error(name + ": cannot be written");
-  }
-  explicit operator bool() const { return file_ != nullptr; }
-  std::FILE* file() const { return file_.get(); }
-  void close() {
-    if (file_ && (std::ferror(file_.get()) != 0 || std::fclose(file_.release()) != 0))
-      throw std::runtime_error(name_ + ": cannot be written");
-  }
-
- private:
-  struct Closer {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-  };
-  std::string name_;
-  std::unique_ptr<std::FILE, Closer> file_;
-};
-
 // The first pass: how large the scene is, and what it uses.
 class FirstPass final : public SceneSink {
  public:
@@ -298,13 +276,13 @@ int run(HostProgramOptions& options) {
   for (std::int32_t frame = first; frame < first + head.picture.frames; ++frame) {
     if (frame != first) writer = open(frame);
     ProgressLine progress(!quiet);
+    std::int32_t rows = 0;
     host.renderFrame(
         view, head.picture, frame,
         [&](const std::vector<Color>& row) {
           writer->row(row);
           appendRow(sum, row);
-          const auto rows = static_cast<std::int32_t>(sum.pixels.size()) / (3 * area.width);
-          if (everyRows > 0 && rows % everyRows == 0) sayLine(rows, area.height, area.width);
+          if (everyRows > 0 && ++rows % everyRows == 0) sayLine(rows, area.height, area.width);
         },
         [&](const HostTask::Progress& p) { progress.show(p.rows, p.allRows, p.samples, "samples"); });
     writer->finish();

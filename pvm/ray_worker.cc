@@ -31,9 +31,7 @@ bool staysInside(const Bounds& box, const Segment& segment) {
 void RayWorker::begin(TaskId host, Configure&& message, std::uint32_t cluster, std::uint32_t finder) {
   host_ = host;
   home_.clear();
-  Contents contents(message.tree, message.cellContents, [&](VoxelId voxel) {
-    return own_ != nullptr && message.directory.ownerOf(voxel, cluster) == desk_.link.self();
-  });
+  Contents contents(message.tree, message.cellContents);
   at_ = {
       std::move(message.setting), std::move(message.tree), std::move(message.directory), cluster,
       message.exposure,           message.policy,          std::move(message.cellBytes), std::move(contents)};
@@ -54,28 +52,21 @@ void RayWorker::begin(TaskId host, Configure&& message, std::uint32_t cluster, s
       kExpectedUses * std::min(1.0, static_cast<double>(at_.policy.cacheBytes) / std::max(model, 1.0));
 }
 
-// Own voxels as wholes; of others, cell by cell, what may be fetched.  A task that fetches nothing finds out by the walk of
-// a ray whether it must go elsewhere.
+// Own voxels as wholes; of others, cell by cell, what may be fetched.  A task that fetches nothing asks which rays could meet
+// anything of others, and finds out by the walk of such a ray where it must go.
 void RayWorker::layPatches(std::span<const Bounds> cellContents) {
   patches_.clear();
-  std::vector<Bounds> boxes;
+  std::vector<Bounds> boxes, ofOthers;
   const BinTree& tree = at_.tree;
-  onlyVoxel_.reset();
-  std::uint32_t ownVoxels = 0;
-  for (std::uint32_t voxel = 0; own_ != nullptr && voxel < voxelCount(tree); ++voxel) {
-    if (at_.ownerOf(VoxelId{voxel}) != desk_.link.self()) continue;
-    onlyVoxel_ = boundsOf(tree, VoxelId{voxel});
-    ++ownVoxels;
-  }
-  if (ownVoxels != 1) onlyVoxel_.reset();
   knowsOthers_ = own_ == nullptr || fetches();
   for (std::uint32_t cell = 0; cell < cellCount(tree); ++cell) {
     const Bounds& box = cellContents[cell];
     if (box.empty()) continue;
     const VoxelId voxel = voxelOfCell(tree, CellId{cell});
     const bool mine = own_ != nullptr && at_.ownerOf(voxel) == desk_.link.self();
-    if (!mine && !knowsOthers_) continue;
-    if (mine && !patches_.empty() && patches_.back().mine && patches_.back().voxel == voxel) {
+    if (!mine && !knowsOthers_) {
+      ofOthers.push_back(box);
+    } else if (mine && !patches_.empty() && patches_.back().mine && patches_.back().voxel == voxel) {
       boxes.back() = join(boxes.back(), box);  // the cells of a voxel are numbered one after the other
     } else {
       boxes.push_back(box);
@@ -83,6 +74,9 @@ void RayWorker::layPatches(std::span<const Bounds> cellContents) {
     }
   }
   patchwork_ = Patchwork(std::move(boxes));
+  others_ = Patchwork(std::move(ofOthers));
+  onlyVoxel_.reset();
+  if (!knowsOthers_ && patches_.size() == 1) onlyVoxel_ = boundsOf(tree, patches_[0].voxel);
 }
 
 // In runs of records that follow each other, as they do in a pyramid.
@@ -148,7 +142,7 @@ RaySet RayWorker::mayLeave(std::span<Segment> segments, std::span<const double> 
   }
   RaySet rays = 0;
   if (count > 0)
-    forEachRay(at_.contents.mayMeetOthers(std::span(leaving).first(count)),
+    forEachRay(others_.touching(std::span(leaving).first(count)),
                [&](std::size_t k) { rays |= RaySet{1} << from[k]; });
   return rays;
 }
@@ -413,17 +407,18 @@ bool RayWorker::fetchingPays(CellId missing, std::size_t rays) const {
 void RayWorker::follow(std::span<const Visitors> visitors, const Model& model, const VoxelSource& voxels) {
   lookingForLight_ = true;
   visitorLight_.clear();
-  visitorLeaves_.clear();
   Segment segments[kBundleSize];
   double begin[kBundleSize];
   std::size_t count = 0;
   const auto look = [&] {
     const std::size_t known = visitorLight_.size();
     visitorLight_.resize(known + count);
-    patchwork_.obstruct(*this, std::span(segments).first(count), begin,
-                        std::span(visitorLight_).subspan(known), counts_);
-    const RaySet leaving = knowsOthers_ ? 0 : mayLeave(std::span(segments).first(count), begin);
-    for (std::size_t i = 0; i < count; ++i) visitorLeaves_.push_back((leaving >> i & 1) != 0);
+    const std::span light = std::span(visitorLight_).subspan(known);
+    patchwork_.obstruct(*this, std::span(segments).first(count), begin, light, counts_);
+    if (!knowsOthers_)
+      forEachRay(mayLeave(std::span(segments).first(count), begin), [&](std::size_t i) {
+        if (light[i] == Patchwork::Light::clear) light[i] = Patchwork::Light::missing;
+      });
     count = 0;
   };
   for (const Visitors& some : visitors) {
@@ -442,10 +437,9 @@ void RayWorker::follow(std::span<const Visitors> visitors, const Model& model, c
     settled_.record = some.head.record;
     settled_.colors.clear();
     for (const ShadowTravel& travel : some.rays) {
-      const bool leaves = visitorLeaves_[next] != 0;
       const Patchwork::Light light = visitorLight_[next++];
       std::uint32_t step = travel.step;
-      if (light == Patchwork::Light::missing || (light == Patchwork::Light::clear && leaves)) {
+      if (light == Patchwork::Light::missing) {
         if (const auto next = elsewhere({travel.origin, travel.direction, 1}, travel.distance, step)) {
           ShadowTravel rest = travel;
           rest.step = step;

@@ -237,6 +237,7 @@ class RayWorker : public GroundSource, public PatchSource {
   bool knowsOthers_ = false;         // the cells of others are patches, too
   bool lookingForLight_ = false;     // for shadow rays, not for others
   Patchwork patchwork_;
+  Patchwork others_;                           // of a task that fetches nothing: where others have anything
   std::array<Shading, kBundleSize> shadings_;  // kept: they take memory
   Model noModel_;
   Region nothing_;                   // of an empty cell
@@ -247,7 +248,6 @@ class RayWorker : public GroundSource, public PatchSource {
   Expect expect_;
   NearHits near_;
   std::vector<Patchwork::Light> visitorLight_;
-  std::vector<std::uint8_t> visitorLeaves_;
 
   std::uint32_t finder_ = 0;
   std::uint64_t serial_ = 0;                                       // of the next intersection found here

@@ -6,6 +6,7 @@
 
 #include "rayshade/base/interruption.h"
 #include "rayshade/options.h"
+#include "rayshade/output_file.h"
 #include "rayshade/progress.h"
 #include "rayshade/render.h"
 #include "rayshade/scene_plan.h"
@@ -74,8 +75,8 @@ int run(const Options& options) {
   const std::string outputFile = chooseOutput(options, head);
   times.read = lap();
   const bool quiet = options.quiet || head.report.quiet;
-  const bool report =
-      options.verbose || !options.verboseFile.empty() || (head.report.wanted && head.report.verbose);
+  const bool report = reportWanted(options, head);
+  OutputFile reportTo(reportFile(options, head));
   const std::int32_t everyRows = rowsBetweenLines(options, head);
   const std::int32_t first = head.picture.firstFrame;
   for (std::int32_t frame = first; frame < first + head.picture.frames; ++frame) {
@@ -102,13 +103,9 @@ int run(const Options& options) {
     writer.finish();
     times.trace = lap();
     progress.clear();
-    if (!report) continue;
-    const std::string reportTo = reportFile(options, head);
-    std::FILE* to = reportTo.empty() ? stderr : std::fopen(reportTo.c_str(), frame == first ? "w" : "a");
-    if (to == nullptr) throw std::runtime_error(reportTo + ": cannot be written");
-    writeReport(to, scene, result, times, checksum(sum));
-    if (to != stderr) std::fclose(to);
+    if (report) writeReport(reportTo ? reportTo.file() : stderr, scene, result, times, checksum(sum));
   }
+  reportTo.close();
   return 0;
 }
 

@@ -150,7 +150,12 @@ std::int32_t rowsBetweenLines(const Options& options, const SceneHead& head) {
   return head.report.wanted ? head.report.everyRows : 0;
 }
 
+bool reportWanted(const Options& options, const SceneHead& head) {
+  return options.verbose || !options.verboseFile.empty() || (head.report.wanted && head.report.verbose);
+}
+
 std::string reportFile(const Options& options, const SceneHead& head) {
+  if (!reportWanted(options, head)) return {};
   return options.verboseFile.empty() ? head.report.file : options.verboseFile;
 }
 

@@ -45,8 +45,10 @@ void applyOptions(const Options& options, SceneHead& head);
 std::string sceneName(const Options& options);
 
 // -O, else what the scene says; warns when both do.
-// Every so many rows a line is to say how far it is; 0: never.  Where the report goes; empty: to the terminal.
+// Every so many rows a line is to say how far it is; 0: never.
 std::int32_t rowsBetweenLines(const Options& options, const SceneHead& head);
+// Is there to be a report at the end, and into which file; empty: to the terminal, or none.
+bool reportWanted(const Options& options, const SceneHead& head);
 std::string reportFile(const Options& options, const SceneHead& head);
 
 std::string chooseOutput(const Options& options, const SceneHead& head);

@@ -108,6 +108,17 @@ void Patchwork::visit(PatchSource& source, std::span<Segment> segments, std::spa
   forEachRay(unsettled(missing, segments, begin), [&](std::size_t i) { found[i].settled = false; });
 }
 
+RaySet Patchwork::touching(std::span<Segment> segments, Processor processor) const {
+  RaySet meeting = 0;
+  onProcessor(processor, [&]() RAYSHADE_INLINE {
+    bvh_.any(segments, [&](std::uint32_t, std::uint32_t, RaySet rays) {
+      meeting |= rays;
+      return rays;
+    });
+  });
+  return meeting;
+}
+
 void Patchwork::obstruct(PatchSource& source, std::span<Segment> segments, std::span<const double> begin,
                          std::span<Light> light, TraceCounts& counts, Processor processor) const {
   if (boxes_.size() == 1) {

@@ -41,6 +41,9 @@ class Patchwork {
     filtered,  // something transparent is
     missing,   // nothing that is here is, but something that is not here might be
   };
+  // Which of at most kBundleSize segments could meet something in any of the patches, wherever that is?
+  RaySet touching(std::span<Segment> segments, Processor processor = thisProcessor()) const;
+
   // What becomes of at most kBundleSize shadow rays.
   void obstruct(PatchSource& source, std::span<Segment> segments, std::span<const double> begin,
                 std::span<Light> light, TraceCounts& counts, Processor processor = thisProcessor()) const;

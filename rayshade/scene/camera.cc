@@ -62,17 +62,26 @@ void throughLens(const View& view, const SamplePosition& at, Ray& ray) {
 
 bool isPinhole(const View& view) { return view.lensRight == Vec3{} && view.lensUp == Vec3{}; }
 
-}  // namespace
+// From the middle of the lens through the screen.
+Vec3 directionOf(const View& view, const SamplePosition& at) {
+  return normalize(view.first + at.u * view.right + at.v * view.down);
+}
 
-Ray primaryRay(const View& view, const SamplePosition& at, std::int32_t frame) {
+Ray rayOf(const View& view, const SamplePosition& at, Vec3 direction, std::int32_t frame, bool pinhole) {
   Ray ray;
   ray.origin = view.eye;
-  ray.direction = normalize(view.first + at.u * view.right + at.v * view.down);
+  ray.direction = direction;
   ray.moment = {at.time, frame};
   ray.sample = at.number;
   ray.key = at.key;
-  if (!isPinhole(view)) throughLens(view, at, ray);
+  if (!pinhole) throughLens(view, at, ray);
   return ray;
+}
+
+}  // namespace
+
+Ray primaryRay(const View& view, const SamplePosition& at, std::int32_t frame) {
+  return rayOf(view, at, directionOf(view, at), frame, isPinhole(view));
 }
 
 void primaryRays(const View& view, const PictureSpec& picture, std::uint64_t seed, std::int32_t frame,
@@ -86,18 +95,9 @@ void primaryRays(const View& view, const PictureSpec& picture, std::uint64_t see
     const std::span some = samples.subspan(first, std::min(kAtOnce, samples.size() - first));
     samplePositions(picture, seed, static_cast<std::uint32_t>(frame), some, positions);
     // In a loop of its own: the roots and divisions of several rays are on their way at a time.
+    for (std::size_t i = 0; i < some.size(); ++i) directions[i] = directionOf(view, positions[i]);
     for (std::size_t i = 0; i < some.size(); ++i)
-      directions[i] = normalize(view.first + positions[i].u * view.right + positions[i].v * view.down);
-    for (std::size_t i = 0; i < some.size(); ++i) {
-      Ray& ray = rays[first + i];
-      ray = Ray{};
-      ray.origin = view.eye;
-      ray.direction = directions[i];
-      ray.moment = {positions[i].time, frame};
-      ray.sample = positions[i].number;
-      ray.key = positions[i].key;
-      if (!pinhole) throughLens(view, positions[i], ray);
-    }
+      rays[first + i] = rayOf(view, positions[i], directions[i], frame, pinhole);
   }
 }
 

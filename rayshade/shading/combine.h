@@ -26,9 +26,8 @@ struct WayBack {
 // All that combine() needs to know of a hit, and nothing else.
 struct Intersection {
   WayBack back;
-  std::optional<Color>
-      lightsAdded;  // ambient light and lights have been added: then what follows does not count
-  Vec3 direction;   // of the ray that hit
+  std::optional<Color> lightsAdded;  // if they have been: their sum, and what follows does not count
+  Vec3 direction;                    // of the ray that hit
   RandomKey key{};
   std::int32_t sample = 0;
   Vec3 position, normal;

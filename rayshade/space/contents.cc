@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rayshade/space/contents.h"
 
-#include "rayshade/space/bvh_bundle.h"
-
 namespace rayshade {
 
 Bounds contentOf(const Bounds& object, const BinTree& tree, CellId cell) {
@@ -15,9 +13,8 @@ Bounds contentOf(const Bounds& object, const BinTree& tree, CellId cell) {
   return padded(part);
 }
 
-Contents::Contents(const BinTree& tree, std::span<const Bounds> cells,
-                   const std::function<bool(VoxelId)>& isOwn) {
-  std::vector<Bounds> full, ofOthers;
+Contents::Contents(const BinTree& tree, std::span<const Bounds> cells) {
+  std::vector<Bounds> full;
   std::uint32_t cell = 0;
   for (std::uint32_t voxel = 0; voxel < voxelCount(tree); ++voxel) {
     const std::uint32_t end = voxel + 1 < voxelCount(tree)
@@ -27,20 +24,7 @@ Contents::Contents(const BinTree& tree, std::span<const Bounds> cells,
     for (; cell < end; ++cell)
       if (!cells[cell].empty()) full.push_back(cells[cell]);
     voxels_.emplace_back(full);
-    if (!isOwn(VoxelId{voxel})) ofOthers.insert(ofOthers.end(), full.begin(), full.end());
   }
-  others_ = Bvh(ofOthers);
-}
-
-RaySet Contents::mayMeetOthers(std::span<Segment> segments, Processor processor) const {
-  RaySet meeting = 0;
-  onProcessor(processor, [&]() RAYSHADE_INLINE {
-    others_.any(segments, [&](std::uint32_t, std::uint32_t, RaySet rays) {
-      meeting |= rays;
-      return rays;
-    });
-  });
-  return meeting;
 }
 
 }  // namespace rayshade

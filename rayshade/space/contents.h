@@ -6,10 +6,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <functional>
-
 #include "rayshade/space/bintree.h"
-#include "rayshade/space/bundle.h"
+#include "rayshade/space/bvh.h"
 
 namespace rayshade {
 
@@ -19,8 +17,8 @@ Bounds contentOf(const Bounds& object, const BinTree& tree, CellId cell);
 class Contents {
  public:
   Contents() = default;
-  // `cells`: by cell, the box around what is in it; empty: nothing.  `isOwn`: is a voxel one's own?
-  Contents(const BinTree& tree, std::span<const Bounds> cells, const std::function<bool(VoxelId)>& isOwn);
+  // `cells`: by cell, the box around what is in it; empty: nothing.
+  Contents(const BinTree& tree, std::span<const Bounds> cells);
 
   // Could the ray meet something in this voxel at t in [tMin, tMax]?
   bool mayMeet(VoxelId voxel, const Vec3& origin, const Vec3& direction, double tMin, double tMax) const {
@@ -28,12 +26,8 @@ class Contents {
                                                         [](std::uint32_t, std::uint32_t) { return true; });
   }
 
-  // Which of at most kBundleSize rays could meet something in a voxel of others within their segments?
-  RaySet mayMeetOthers(std::span<Segment> segments, Processor processor = thisProcessor()) const;
-
  private:
   std::vector<Bvh> voxels_;
-  Bvh others_;  // all boxes of voxels that are not one's own
 };
 
 }  // namespace rayshade
