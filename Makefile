@@ -27,7 +27,7 @@ OPTIMIZE ?= -O2
 # g++ 12 sees uninitialised memory in std::regex and std::variant when it instruments them; clang knows no such warning.
 san_quiet := -Wno-unknown-warning-option -Wno-maybe-uninitialized
 # -ffp-contract=off: a fused multiply-add would give other bits on machines that have one.
-# -Wno-psabi: wide vectors (rayshade/base/lanes.h) never leave the function that makes them.
+# -Wno-psabi: wide vectors (rayshade/accel/simd.h) never leave the function that makes them.
 FLAGS := -std=c++20 $(OPTIMIZE) -g1 -Wall -Wextra -Werror -Wno-psabi -ffp-contract=off -I. \
          $(if $(SAN),-fsanitize=$(SAN) -fno-sanitize-recover=all -fno-omit-frame-pointer $(san_quiet))
 LIBRARIES := -lpng
@@ -39,10 +39,10 @@ sanitized := SAN=address,undefined OPTIMIZE=-O1 CXX="$(CLANG)" \
 objects = $(patsubst %.cc,$(BUILD)/%.o,$(1))
 find_sources = $(sort $(shell find $(1) -name '*.cc'))
 
-core := $(call objects,$(filter-out rayshade/main.cc rayshade/error_main.cc,$(call find_sources,rayshade)))
+core := $(call objects,$(filter-out rayshade/program/main.cc rayshade/program/error_main.cc,$(call find_sources,rayshade)))
 spd := $(call objects,$(filter-out scenes/spd/main.cc,$(call find_sources,scenes/spd)))
-pvm_door := $(call objects,pvm/pvm_link.cc pvm/virtual_machine.cc)
-pvm_programs := $(call objects,pvm/main.cc pvm/host_program.cc)
+pvm_door := $(call objects,pvm/link/pvm_link.cc pvm/link/virtual_machine.cc)
+pvm_programs := $(call objects,pvm/program/main.cc pvm/program/host_program.cc)
 tasks := $(filter-out $(pvm_door) $(pvm_programs),$(call objects,$(call find_sources,pvm)))
 # Tests that need no PVM daemon make one program, those that do another one.
 pvm_tests := $(call objects,tests/parallel/pvm_test.cc tests/parallel/pvm_suite_test.cc)
@@ -83,9 +83,9 @@ $(BUILD)/lib%.a:
 
 link = @mkdir -p $(@D) && echo "link $@" && $(CXX) $(FLAGS) $(EXTRA_FLAGS) $(filter %.o,$^) $(filter %.a,$^) $(1) $(LIBRARIES) -o $@
 
-$(BIN)/rayshade: $(BUILD)/rayshade/main.o $(BUILD)/libcore.a
+$(BIN)/rayshade: $(BUILD)/rayshade/program/main.o $(BUILD)/libcore.a
 	$(call link)
-$(BIN)/rayshade-error: $(BUILD)/rayshade/error_main.o $(BUILD)/libcore.a
+$(BIN)/rayshade-error: $(BUILD)/rayshade/program/error_main.o $(BUILD)/libcore.a
 	$(call link)
 $(BIN)/spd: $(BUILD)/scenes/spd/main.o $(BUILD)/libspd.a
 	$(call link)

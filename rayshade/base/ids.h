@@ -10,11 +10,11 @@
 namespace rayshade {
 
 enum class ObjectId : std::uint32_t {};      // a placed shape, CSG or instance
-enum class FrameId : std::uint32_t {};       // a step of the naming tree; 0 is the root
+enum class NodeId : std::uint32_t {};        // a step of the naming tree; 0 is the root
 enum class SurfaceId : std::uint32_t {};     // a surface as bound to objects
 enum class DefinitionId : std::uint32_t {};  // objects that are kept together; 0 is the world
 
-inline constexpr FrameId kRootFrame{0};
+inline constexpr NodeId kRootNode{0};
 inline constexpr DefinitionId kWorld{0};
 inline constexpr SurfaceId kNoSurface{0xffffffffu};
 

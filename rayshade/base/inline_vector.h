@@ -40,7 +40,7 @@ class InlineVector {
     if (this != &from) from.clear();
     return *this;
   }
-  explicit InlineVector(std::size_t size, T value = T{}) { resize(size, value); }
+  explicit InlineVector(std::size_t size, T value = T{}) { assign(size, value); }
 
   std::size_t size() const { return size_; }
   bool empty() const { return size_ == 0; }
@@ -76,7 +76,7 @@ class InlineVector {
       outside_.clear();
     }
   }
-  void resize(std::size_t size, T value = T{}) {
+  void assign(std::size_t size, T value = T{}) {
     clear();
     if (size <= N) {
       for (std::size_t i = 0; i < size; ++i) inside_.elements[i] = value;

@@ -11,7 +11,7 @@
 
 #include <vector>
 
-#include "rayshade/image/picture.h"
+#include "rayshade/image/picture_file.h"
 
 namespace rayshade {
 

@@ -12,7 +12,7 @@
 #include <array>
 #include <string>
 
-#include "rayshade/image/picture.h"
+#include "rayshade/image/picture_file.h"
 
 namespace rayshade {
 

@@ -7,9 +7,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "rayshade/image/sampler.h"
 #include "rayshade/optics/ray.h"
-#include "rayshade/scene/setting.h"
+#include "rayshade/sampling/sampler.h"
+#include "rayshade/scene/settings.h"
 
 namespace rayshade {
 

@@ -21,15 +21,15 @@ void Extract::addSurface(SurfaceId id, const Surface& surface) {
   if (surfaces_.insert(number(id)).second) items.emplace_back(SurfaceItem{id, surface});
 }
 
-// Outermost first: a frame comes after its parent.
-void Extract::addFrames(FrameIndex index) {
+// Outermost first: a node comes after its parent.
+void Extract::addNodes(NodeIndex index) {
   if (index == 0) return;
-  const PlacedFrame& frame = store_.frame(index);
-  if (!frames_.insert(number(frame.id)).second) return;
-  addFrames(frame.parent);
-  Frame copy = frame.frame;
+  const PlacedNode& node = store_.node(index);
+  if (!nodes_.insert(number(node.id)).second) return;
+  addNodes(node.parent);
+  SceneNode copy = node.node;
   copy.surface = kNoSurface;  // objects come with the surface that binds them
-  items.emplace_back(FrameItem{frame.id, std::move(copy)});
+  items.emplace_back(NodeItem{node.id, std::move(copy)});
 }
 
 void Extract::add(ObjectIndex index, DefinitionId container) {
@@ -37,10 +37,10 @@ void Extract::add(ObjectIndex index, DefinitionId container) {
   SceneObject object;
   object.id = placed.id;
   object.container = container;
-  object.frame = store_.frame(placed.frame).id;
+  object.node = store_.node(placed.node).id;
   object.surface = store_.surfaceId(placed.surface);
   if (placed.surface != kNone) addSurface(object.surface, store_.surface(placed.surface));
-  addFrames(placed.frame);
+  addNodes(placed.node);
   DefinitionId used = kWorld;
   if (placed.kind == kInstanceKind) {
     object.body = store_.instance(placed);

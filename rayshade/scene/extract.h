@@ -12,18 +12,18 @@ class Extract {
  public:
   explicit Extract(const SceneStore& store) : store_(store) {}
 
-  // Adds an object of the world and, unless they are there already, its frames, surface and definitions.
+  // Adds an object of the world and, unless they are there already, its nodes, surface and definitions.
   void add(ObjectIndex object) { add(object, kWorld); }
 
   std::vector<Item> items;
 
  private:
   void add(ObjectIndex object, DefinitionId container);
-  void addFrames(FrameIndex frame);
+  void addNodes(NodeIndex node);
   void addSurface(SurfaceId id, const Surface& surface);
 
   const SceneStore& store_;
-  std::set<std::uint32_t> frames_, surfaces_, definitions_;
+  std::set<std::uint32_t> nodes_, surfaces_, definitions_;
 };
 
 }  // namespace rayshade

@@ -40,10 +40,10 @@ void FeatureSink::surface(SurfaceId, const Surface& surface) {
   features_.shadowTransparent += surface.transparency >= kNegligible ? 1 : 0;
 }
 
-void FeatureSink::count(const Frame& frame) {
-  features_.transforms += frame.transforms.empty() ? 0 : 1;
-  features_.moving += frame.transforms.moves() ? 1 : 0;
-  for (const PlacedTexture& placed : frame.textures) {
+void FeatureSink::count(const SceneNode& node) {
+  features_.transforms += node.transforms.empty() ? 0 : 1;
+  features_.moving += node.transforms.moves() ? 1 : 0;
+  for (const PlacedTexture& placed : node.textures) {
     ++features_.textures[placed.texture.index()];
     features_.moving += placed.transforms.moves() ? 1 : 0;
     std::visit(

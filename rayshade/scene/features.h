@@ -16,7 +16,7 @@ struct SceneFeatures {
   std::array<std::uint64_t, AllTextures::size> textures{};  // by position in AllTextures
   std::uint64_t instances = 0, csgOperations = 0;
   std::uint64_t unbounded = 0;           // shapes of infinite extent
-  std::uint64_t transforms = 0;          // frames that transform
+  std::uint64_t transforms = 0;          // nodes that transform
   std::uint64_t moving = 0;              // those among them that change with time
   std::uint64_t coordinateTextures = 0;  // textures that ask for u and v
 
@@ -34,12 +34,12 @@ struct SceneFeatures {
 class FeatureSink : public SceneSink {
  public:
   void surface(SurfaceId id, const Surface& surface) override;
-  void frame(FrameId, Frame frame) override { count(frame); }
+  void node(NodeId, SceneNode node) override { count(node); }
   void object(SceneObject object) override { count(object); }
-  void settled() override {}
+  void endOfStatement() override {}
 
   // For those who give them to somebody else, too.
-  void count(const Frame& frame);
+  void count(const SceneNode& node);
   void count(const SceneObject& object);
 
   const SceneFeatures& features() const { return features_; }

@@ -1,13 +1,13 @@
 // What a scene consists of.
 //
 // A scene is a stream of items.  Objects stand in the world or in a definition; `list`, `grid` and the
-// instance of a primitive leave no trace but a frame: anonymous aggregates are dissolved into their members
+// instance of a primitive leave no trace but a node: anonymous aggregates are dissolved into their members
 // while the scene is read.  What must stay whole - a named object, the two operands of a CSG operation - is a
 // definition, and an object that uses it names it.
 //
-//   Frame          a step of the naming tree: transforms, surface, textures, parent
-//   SceneObject    a shape in a frame
-//   definition     objects under a frame tree of their own (its root is again kRootFrame)
+//   SceneNode          a step of the naming tree: transforms, surface, textures, parent
+//   SceneObject    a shape in a node
+//   definition     objects under a node tree of their own (its root is again kRootNode)
 //
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
@@ -24,15 +24,15 @@
 
 namespace rayshade {
 
-// A texture as it hangs on a frame: its own transforms map the space of the frame's parent to the texture's.
+// A texture as it hangs on a node: its own transforms map the space of the node's parent to the texture's.
 struct PlacedTexture {
   AnyTexture texture;
   TransformChain transforms;
 };
 
-// From the space of what is inside the frame to the space of its parent.
-struct Frame {
-  FrameId parent = kRootFrame;
+// From the space of what is inside the node to the space of its parent.
+struct SceneNode {
+  NodeId parent = kRootNode;
   TransformChain transforms;
   SurfaceId surface = kNoSurface;       // for everything inside that has none of its own
   std::vector<PlacedTexture> textures;  // applied after those of the things inside, in this order
@@ -56,7 +56,7 @@ using ObjectBody = std::variant<AnyShape, Instance, Csg>;
 struct SceneObject {
   ObjectId id{};
   DefinitionId container = kWorld;
-  FrameId frame = kRootFrame;
+  NodeId node = kRootNode;
   SurfaceId surface = kNoSurface;  // its own, if it has one
   ObjectBody body;
 };
@@ -66,32 +66,32 @@ struct SurfaceItem {
   SurfaceId id{};
   Surface surface;
 };
-struct FrameItem {
-  FrameId id{};
-  Frame frame;
+struct NodeItem {
+  NodeId id{};
+  SceneNode node;
 };
-using Item = std::variant<SurfaceItem, FrameItem, SceneObject>;
+using Item = std::variant<SurfaceItem, NodeItem, SceneObject>;
 
 // Takes the items of a scene one by one while it is read.
 //
-// Order: a frame or surface comes before what mentions it, and surfaces are numbered 0, 1, 2... as they come.  There is
+// Order: a node or surface comes before what mentions it, and surfaces are numbered 0, 1, 2... as they come.  There is
 // one exception.  The transforms of an
-// aggregate stand behind its `end`, so its frame comes after its members; `settled` is called whenever every
-// frame mentioned so far is known (at the end of each top-level statement).  A definition comes before its
+// aggregate stand behind its `end`, so its node comes after its members; `endOfStatement` is called whenever every
+// node mentioned so far is known (at the end of each top-level statement).  A definition comes before its
 // first use.
 class SceneSink {
  public:
   virtual ~SceneSink() = default;
   virtual void surface(SurfaceId id, const Surface& surface) = 0;
-  virtual void frame(FrameId id, Frame frame) = 0;
+  virtual void node(NodeId id, SceneNode node) = 0;
   virtual void object(SceneObject object) = 0;
-  virtual void settled() = 0;
+  virtual void endOfStatement() = 0;
 };
 
 // In items.cc, both directions: shapes and textures of every kind take long to compile, and many files read or write
 // items.
-void serialize(Writer& archive, Frame& f);
-void serialize(Reader& archive, Frame& f);
+void serialize(Writer& archive, SceneNode& f);
+void serialize(Reader& archive, SceneNode& f);
 void serialize(Writer& archive, SceneObject& o);
 void serialize(Reader& archive, SceneObject& o);
 
@@ -108,8 +108,8 @@ void serialize(Archive& archive, SurfaceItem& i) {
   archive(i.id, i.surface);
 }
 template <class Archive>
-void serialize(Archive& archive, FrameItem& i) {
-  archive(i.id, i.frame);
+void serialize(Archive& archive, NodeItem& i) {
+  archive(i.id, i.node);
 }
 
 }  // namespace rayshade

@@ -22,12 +22,12 @@ void readItems(Spool& spool, std::uint64_t begin, std::uint64_t end,
   }
 }
 
-// Where a chain of frames, innermost first, takes a point at a moment.  Multiplied from the outside in, like the maps of
+// Where a chain of nodes, innermost first, takes a point at a moment.  Multiplied from the outside in, like the maps of
 // a SceneStore: the product of the same matrices in another order of brackets has other last bits.
-Affine composed(const std::vector<const FrameItem*>& chain, const Moment& moment) {
+Affine composed(const std::vector<const NodeItem*>& chain, const Moment& moment) {
   Affine map;
   for (auto f = chain.rbegin(); f != chain.rend(); ++f)
-    map = then(chainAt((*f)->frame.transforms, moment), map);
+    map = then(chainAt((*f)->node.transforms, moment), map);
   return map;
 }
 
@@ -48,7 +48,7 @@ std::optional<Surface> ObjectStream::findSurface(SurfaceId id) {
   return decode<Surface>(bytes);
 }
 
-void ObjectStream::note(FrameId id) { statement_.mentioned = std::max(statement_.mentioned, number(id)); }
+void ObjectStream::note(NodeId id) { statement_.mentioned = std::max(statement_.mentioned, number(id)); }
 
 void ObjectStream::spool(const Item& item, Spool& to) {
   scratch_.clear();
@@ -58,8 +58,8 @@ void ObjectStream::spool(const Item& item, Spool& to) {
   to.append(scratch_);
 }
 
-void ObjectStream::frame(FrameId id, Frame frame) {
-  FrameItem item{id, std::move(frame)};
+void ObjectStream::node(NodeId id, SceneNode node) {
+  NodeItem item{id, std::move(node)};
   spool(item, statement_.spool);
   if (number(id) <= statement_.mentioned) statement_.late.emplace(number(id), std::move(item));
   note(id);
@@ -67,12 +67,12 @@ void ObjectStream::frame(FrameId id, Frame frame) {
 
 void ObjectStream::object(SceneObject object) {
   // The common case, a primitive at top level with neither transforms nor textures, needs no spooling.
-  if (object.container == kWorld && object.frame == kRootFrame && statement_.spool.size() == 0 &&
+  if (object.container == kWorld && object.node == kRootNode && statement_.spool.size() == 0 &&
       std::holds_alternative<AnyShape>(object.body)) {
     hand(object, nullptr);
     return;
   }
-  note(object.frame);
+  note(object.node);
   if (object.container != kWorld) {
     auto [definition, isNew] = definitions_.try_emplace(number(object.container));
     if (isNew) statement_.defined.push_back(object.container);
@@ -91,32 +91,32 @@ Bounds ObjectStream::ownBounds(const SceneObject& object) const {
   return boundsOf(std::get<Csg>(object.body).operands);
 }
 
-// From the innermost frame outwards.  `own` is the frame that came just before the object.
-std::vector<const FrameItem*> ObjectStream::framesOf(FrameId id, const FrameItem* own) const {
-  std::vector<const FrameItem*> chain;
-  while (id != kRootFrame) {
-    const FrameItem* f = nullptr;
+// From the innermost node outwards.  `own` is the node that came just before the object.
+std::vector<const NodeItem*> ObjectStream::nodesOf(NodeId id, const NodeItem* own) const {
+  std::vector<const NodeItem*> chain;
+  while (id != kRootNode) {
+    const NodeItem* f = nullptr;
     if (own != nullptr && own->id == id) {
       f = own;
     } else if (const auto found = statement_.late.find(number(id)); found != statement_.late.end()) {
       f = &found->second;
     }
-    if (f == nullptr || number(f->frame.parent) >= number(id)) break;
+    if (f == nullptr || number(f->node.parent) >= number(id)) break;
     chain.push_back(f);
-    id = f->frame.parent;
+    id = f->node.parent;
   }
   return chain;
 }
 
-void ObjectStream::hand(const SceneObject& object, const FrameItem* own) {
-  const auto chain = framesOf(object.frame, own);
+void ObjectStream::hand(const SceneObject& object, const NodeItem* own) {
+  const auto chain = nodesOf(object.node, own);
   const bool moves =
-      std::any_of(chain.begin(), chain.end(), [](const FrameItem* f) { return f->frame.transforms.moves(); });
+      std::any_of(chain.begin(), chain.end(), [](const NodeItem* f) { return f->node.transforms.moves(); });
   const Bounds bounds = placedBounds(
       ownBounds(object), moves, [&](const Moment& moment) { return composed(chain, moment); }, exposure_);
   if (object.container == kWorld) {
     ++objects_;
-    std::vector<const FrameItem*> outermostFirst(chain.rbegin(), chain.rend());
+    std::vector<const NodeItem*> outermostFirst(chain.rbegin(), chain.rend());
     consumer_(object, bounds, outermostFirst);
   } else {
     Bounds& whole = definitions_[number(object.container)].bounds;
@@ -124,10 +124,10 @@ void ObjectStream::hand(const SceneObject& object, const FrameItem* own) {
   }
 }
 
-void ObjectStream::settled() {
+void ObjectStream::endOfStatement() {
   Statement& statement = statement_;
   if (statement.spool.size() == 0) return;
-  // What definitions consist of is kept: their objects, and every frame that one of those can hang on.  This comes
+  // What definitions consist of is kept: their objects, and every node that one of those can hang on.  This comes
   // first: the consumer of an object asks for the definition that it uses, which can be of the same statement.
   if (!statement.defined.empty()) {
     const std::uint64_t begin = definitionSpool_.size();
@@ -139,10 +139,10 @@ void ObjectStream::settled() {
       definitions_[number(id)].pieces.emplace_back(begin, definitionSpool_.size() - begin);
   }
   // The members of a definition come before its first use, so one pass in order knows the bounds of what it meets.
-  FrameItem own;
+  NodeItem own;
   bool ownIsSet = false;
   readItems(statement.spool, 0, statement.spool.size(), [&](const Item& item) {
-    if (const FrameItem* f = std::get_if<FrameItem>(&item)) {
+    if (const NodeItem* f = std::get_if<NodeItem>(&item)) {
       own = *f;
       ownIsSet = true;
     } else if (const SceneObject* object = std::get_if<SceneObject>(&item)) {

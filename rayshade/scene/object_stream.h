@@ -3,7 +3,7 @@
 // The transforms of an aggregate stand behind its members, so where a member goes is known only at the end of its
 // top-level statement.  Until then the items of the statement are spooled (to disk when they are many); then they are
 // read back and handed on with their bounds.  Definitions stay in a spool, and can be read back as often as they are
-// used, and so do surfaces.  What is kept in memory: frames that came after their members, and an entry per definition.
+// used, and so do surfaces.  What is kept in memory: nodes that came after their members, and an entry per definition.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -17,20 +17,20 @@ namespace rayshade {
 
 class ObjectStream : public SceneSink {
  public:
-  // Takes an object of the world with its bounds in world space.  `frames` are those between it and the world, in the
+  // Takes an object of the world with its bounds in world space.  `nodes` are those between it and the world, in the
   // order of their numbers.
   using Consumer = std::function<void(const SceneObject& object, const Bounds& bounds,
-                                      std::span<const FrameItem* const> frames)>;
+                                      std::span<const NodeItem* const> nodes)>;
 
   ObjectStream(const Exposure& exposure, Consumer consumer);
 
   void surface(SurfaceId id, const Surface& surface) override;
-  void frame(FrameId id, Frame frame) override;
+  void node(NodeId id, SceneNode node) override;
   void object(SceneObject object) override;
-  void settled() override;
+  void endOfStatement() override;
 
   std::optional<Surface> findSurface(SurfaceId id);
-  // What a definition consists of: frames and objects, frames in any order; other definitions that it uses are
+  // What a definition consists of: nodes and objects, nodes in any order; other definitions that it uses are
   // mentioned only.
   void readDefinition(DefinitionId id, const std::function<void(const Item&)>& item);
 
@@ -43,16 +43,16 @@ class ObjectStream : public SceneSink {
   };
   struct Statement {  // the top-level statement that is being read
     Spool spool;
-    std::map<std::uint32_t, FrameItem> late;  // frames that came after something that mentions them
-    std::uint32_t mentioned = 0;              // the largest number of a frame so far
-    std::vector<DefinitionId> defined;        // in order
+    std::map<std::uint32_t, NodeItem> late;  // nodes that came after something that mentions them
+    std::uint32_t mentioned = 0;             // the largest number of a node so far
+    std::vector<DefinitionId> defined;       // in order
   };
 
-  void note(FrameId id);
+  void note(NodeId id);
   void spool(const Item& item, Spool& to);
   Bounds ownBounds(const SceneObject& object) const;
-  std::vector<const FrameItem*> framesOf(FrameId id, const FrameItem* own) const;
-  void hand(const SceneObject& object, const FrameItem* own);
+  std::vector<const NodeItem*> nodesOf(NodeId id, const NodeItem* own) const;
+  void hand(const SceneObject& object, const NodeItem* own);
 
   Exposure exposure_;
   Consumer consumer_;

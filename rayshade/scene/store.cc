@@ -19,8 +19,8 @@ std::size_t bytesOf(const Vectors& vectors) {
 }  // namespace
 
 SceneStore::SceneStore() {
-  frames_.emplace_back();  // the root
-  frameIndex_[number(kRootFrame)] = 0;
+  nodes_.emplace_back();  // the root
+  nodeIndex_[number(kRootNode)] = 0;
   members_[number(kWorld)];
 }
 
@@ -32,17 +32,17 @@ void SceneStore::surface(SurfaceId id, const Surface& surface) {
   }
 }
 
-void SceneStore::frame(FrameId id, Frame frame) {
-  if (!frameIndex_.try_emplace(number(id), static_cast<FrameIndex>(frames_.size())).second) return;
+void SceneStore::node(NodeId id, SceneNode node) {
+  if (!nodeIndex_.try_emplace(number(id), static_cast<NodeIndex>(nodes_.size())).second) return;
   // An aggregate gets its number before its members do: a parent with a larger number would be a circle.
-  if (number(frame.parent) >= number(id)) {
-    frame.parent = kRootFrame;
+  if (number(node.parent) >= number(id)) {
+    node.parent = kRootNode;
     ++leftOut_;
   }
-  frames_.emplace_back();
-  frames_.back().id = id;
-  frames_.back().frame = std::move(frame);
-  frames_.back().parent = kNone;  // until prepare()
+  nodes_.emplace_back();
+  nodes_.back().id = id;
+  nodes_.back().node = std::move(node);
+  nodes_.back().parent = kNone;  // until prepare()
 }
 
 void SceneStore::object(SceneObject object) {
@@ -70,48 +70,48 @@ void SceneStore::object(SceneObject object) {
   if (isNew) definitions_.push_back(object.container);
   members->second.push_back(static_cast<ObjectIndex>(objects_.size()));
   objects_.push_back(placed);
-  unplacedFrame_.push_back(object.frame);
+  unplacedFrame_.push_back(object.node);
   unplacedSurface_.push_back(object.surface);
 }
 
-// Composes the map of a frame from its own and its parent's; parents first.
-void SceneStore::place(PlacedFrame& frame) {
-  std::vector<PlacedFrame*> pending;
-  for (PlacedFrame* f = &frame; f->parent == kNone;) {
-    const auto parent = frameIndex_.find(number(f->frame.parent));
+// Composes the map of a node from its own and its parent's; parents first.
+void SceneStore::place(PlacedNode& node) {
+  std::vector<PlacedNode*> pending;
+  for (PlacedNode* f = &node; f->parent == kNone;) {
+    const auto parent = nodeIndex_.find(number(f->node.parent));
     pending.push_back(f);
-    if (parent == frameIndex_.end()) ++leftOut_;
-    f->parent = parent == frameIndex_.end() ? 0 : parent->second;
-    f = &frames_[f->parent];
+    if (parent == nodeIndex_.end()) ++leftOut_;
+    f->parent = parent == nodeIndex_.end() ? 0 : parent->second;
+    f = &nodes_[f->parent];
   }
   for (; !pending.empty(); pending.pop_back()) {
-    PlacedFrame& f = *pending.back();
-    const PlacedFrame& parent = frames_[f.parent];
-    f.moves = parent.moves || f.frame.transforms.moves();
-    if (!f.moves) f.toContainer = then(chainAt(f.frame.transforms, {}), parent.toContainer);
+    PlacedNode& f = *pending.back();
+    const PlacedNode& parent = nodes_[f.parent];
+    f.moves = parent.moves || f.node.transforms.moves();
+    if (!f.moves) f.toContainer = then(chainAt(f.node.transforms, {}), parent.toContainer);
     f.identity = !f.moves && isIdentity(f.toContainer);
-    f.textured = parent.textured || !f.frame.textures.empty();
+    f.textured = parent.textured || !f.node.textures.empty();
   }
 }
 
 void SceneStore::prepare() {
-  for (PlacedFrame& frame : frames_)
-    if (frame.parent == kNone) place(frame);
+  for (PlacedNode& node : nodes_)
+    if (node.parent == kNone) place(node);
   for (std::size_t i = placed_; i < objects_.size(); ++i) {
     PlacedObject& object = objects_[i];
-    const auto frame = frameIndex_.find(number(unplacedFrame_[i - placed_]));
-    if (frame == frameIndex_.end()) ++leftOut_;
-    object.frame = frame == frameIndex_.end() ? 0 : frame->second;
-    // The innermost surface: the object's own, else that of the frames around it, inside out.
+    const auto node = nodeIndex_.find(number(unplacedFrame_[i - placed_]));
+    if (node == nodeIndex_.end()) ++leftOut_;
+    object.node = node == nodeIndex_.end() ? 0 : node->second;
+    // The innermost surface: the object's own, else that of the nodes around it, inside out.
     SurfaceId bound = unplacedSurface_[i - placed_];
-    for (FrameIndex f = object.frame; bound == kNoSurface && f != 0; f = frames_[f].parent)
-      bound = frames_[f].frame.surface;
+    for (NodeIndex f = object.node; bound == kNoSurface && f != 0; f = nodes_[f].parent)
+      bound = nodes_[f].node.surface;
     const auto surface = surfaceIndex_.find(number(bound));
     if (bound != kNoSurface && surface == surfaceIndex_.end()) ++leftOut_;
     object.surface = surface == surfaceIndex_.end() ? kNone : surface->second;
   }
   placed_ = objects_.size();
-  std::vector<FrameId>().swap(unplacedFrame_);
+  std::vector<NodeId>().swap(unplacedFrame_);
   std::vector<SurfaceId>().swap(unplacedSurface_);
 }
 
@@ -131,7 +131,7 @@ std::vector<DefinitionId> SceneStore::definitions() const {
 }
 
 std::size_t SceneStore::bytes() const {
-  std::size_t total = objects_.capacity() * sizeof(PlacedObject) + frames_.capacity() * sizeof(PlacedFrame) +
+  std::size_t total = objects_.capacity() * sizeof(PlacedObject) + nodes_.capacity() * sizeof(PlacedNode) +
                       surfaces_.capacity() * sizeof(Surface) + bytesOf(shapes_);
   for (const auto& [id, list] : members_) total += list.capacity() * sizeof(ObjectIndex);
   return total;
@@ -161,10 +161,10 @@ Bounds placedBounds(const Bounds& own, bool moves, const std::function<Affine(co
   return padded({all.low - margin, all.high + margin});
 }
 
-Affine mapAt(const SceneStore& store, FrameIndex index, const Moment& moment) {
-  const PlacedFrame& frame = store.frame(index);
-  if (!frame.moves) return frame.toContainer;
-  return then(chainAt(frame.frame.transforms, moment), mapAt(store, frame.parent, moment));
+Affine mapAt(const SceneStore& store, NodeIndex index, const Moment& moment) {
+  const PlacedNode& node = store.node(index);
+  if (!node.moves) return node.toContainer;
+  return then(chainAt(node.node.transforms, moment), mapAt(store, node.parent, moment));
 }
 
 }  // namespace rayshade

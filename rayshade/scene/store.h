@@ -1,7 +1,7 @@
 // The scene, or a task's share of it, in memory.
 //
-// Items come in by number and are placed: every object gets the index of its frame and of the surface that binds it,
-// every frame its map to the space of its container.  Shapes lie in one array per type, 20 bytes more per
+// Items come in by number and are placed: every object gets the index of its node and of the surface that binds it,
+// every node its map to the space of its container.  Shapes lie in one array per type, 20 bytes more per
 // object; nothing is written after prepare().
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
@@ -16,7 +16,7 @@
 namespace rayshade {
 
 using ObjectIndex = std::uint32_t;   // into SceneStore::objects
-using FrameIndex = std::uint32_t;    // into SceneStore::frames; 0 is the root
+using NodeIndex = std::uint32_t;     // into SceneStore::nodes; 0 is the root
 using SurfaceIndex = std::uint32_t;  // into SceneStore::surfaces
 inline constexpr std::uint32_t kNone = 0xffffffffu;
 
@@ -27,20 +27,20 @@ inline constexpr BodyKind kCsgKind{AllShapes::size + 1};
 
 struct PlacedObject {
   ObjectId id{};
-  FrameIndex frame = 0;
+  NodeIndex node = 0;
   SurfaceIndex surface = kNone;  // the innermost one inside its container; kNone: look at what contains it
   std::uint32_t body = 0;        // in the array of its kind
   BodyKind kind{};
 };
 
-struct PlacedFrame {
-  FrameId id = kRootFrame;
-  FrameIndex parent = 0;
+struct PlacedNode {
+  NodeId id = kRootNode;
+  NodeIndex parent = 0;
   Affine toContainer;     // when nothing on the way moves
   bool moves = false;     // something on the way to the container does
   bool identity = true;   // toContainer is the identity
-  bool textured = false;  // this frame or one further out has textures
-  Frame frame;            // as written
+  bool textured = false;  // this node or one further out has textures
+  SceneNode node;         // as written
 };
 
 class SceneStore : public SceneSink {
@@ -48,11 +48,11 @@ class SceneStore : public SceneSink {
   SceneStore();
 
   void surface(SurfaceId id, const Surface& surface) override;
-  void frame(FrameId id, Frame frame) override;
+  void node(NodeId id, SceneNode node) override;
   void object(SceneObject object) override;
-  void settled() override {}
+  void endOfStatement() override {}
 
-  // Places what came in since the last call.  An object whose frame, surface or definition never came is an error of
+  // Places what came in since the last call.  An object whose node, surface or definition never came is an error of
   // the sender: it is left out and counted.
   void prepare();
   std::size_t leftOut() const { return leftOut_; }
@@ -61,7 +61,7 @@ class SceneStore : public SceneSink {
   std::vector<DefinitionId> definitions() const;  // all but the world, inner ones first
 
   const PlacedObject& object(ObjectIndex index) const { return objects_[index]; }
-  const PlacedFrame& frame(FrameIndex index) const { return frames_[index]; }
+  const PlacedNode& node(NodeIndex index) const { return nodes_[index]; }
   const Surface& surface(SurfaceIndex index) const { return surfaces_[index]; }
   const Surface& surfaceOrDefault(SurfaceIndex index) const {
     return index == kNone ? default_ : surfaces_[index];
@@ -85,20 +85,20 @@ class SceneStore : public SceneSink {
   std::size_t bytes() const;
 
  private:
-  void place(PlacedFrame& frame);
+  void place(PlacedNode& node);
 
   std::vector<PlacedObject> objects_;
-  std::vector<PlacedFrame> frames_;
+  std::vector<PlacedNode> nodes_;
   std::vector<Surface> surfaces_;
   std::vector<SurfaceId> surfaceIds_;
   AllShapes::Vectors shapes_;
   std::vector<Instance> instances_;
   std::vector<Csg> csgs_;
-  std::unordered_map<std::uint32_t, FrameIndex> frameIndex_;
+  std::unordered_map<std::uint32_t, NodeIndex> nodeIndex_;
   std::unordered_map<std::uint32_t, SurfaceIndex> surfaceIndex_;
   std::unordered_map<std::uint32_t, std::vector<ObjectIndex>> members_;  // of each container
   std::vector<DefinitionId> definitions_;                                // in the order of their first member
-  std::vector<FrameId> unplacedFrame_;                                   // of the objects since `placed_`
+  std::vector<NodeId> unplacedFrame_;                                    // of the objects since `placed_`
   std::vector<SurfaceId> unplacedSurface_;
   std::size_t placed_ = 0;
   std::size_t leftOut_ = 0;
@@ -117,7 +117,7 @@ struct Exposure {
 Bounds placedBounds(const Bounds& own, bool moves, const std::function<Affine(const Moment&)>& mapAtMoment,
                     const Exposure& exposure);
 
-// The map from a frame to the space of its container at a moment.
-Affine mapAt(const SceneStore& store, FrameIndex frame, const Moment& moment);
+// The map from a node to the space of its container at a moment.
+Affine mapAt(const SceneStore& store, NodeIndex node, const Moment& moment);
 
 }  // namespace rayshade

@@ -6,26 +6,26 @@
 namespace rayshade {
 namespace {
 
-Color throughAir(Color seen, Vec3 origin, Vec3 direction, double distance, const Setting& setting) {
+Color throughAir(Color seen, Vec3 origin, Vec3 direction, double distance, const SceneSettings& settings) {
   const AirPath path{origin, origin + distance * direction, distance};
   // The last effect of the file is applied first (rayshade's order).
-  for (std::size_t i = setting.atmosphere.size(); i-- > 0;)
-    seen = std::visit([&](const auto& effect) { return effect.apply(seen, path); }, setting.atmosphere[i]);
+  for (std::size_t i = settings.atmosphere.size(); i-- > 0;)
+    seen = std::visit([&](const auto& effect) { return effect.apply(seen, path); }, settings.atmosphere[i]);
   return seen;
 }
 
 // `sampleOf(light, ofLight, point)`: the point of that number of a light, and in the row of all points.
 template <class SampleOf>
-Color addLights(const Surface& surface, const Facing& facing, const LightStates& lit,
-                const Gathered& gathered, const Setting& setting, SampleOf sampleOf) {
-  Color sum = surface.ambient * setting.ambient;
+Color addLights(const Surface& surface, const Facing& facing, const LightVisibilities& lit,
+                const Gathered& gathered, const SceneSettings& settings, SampleOf sampleOf) {
+  Color sum = surface.ambient * settings.ambient;
   std::size_t end = lit.size();  // of the points of the light that is being added
-  for (std::size_t l = setting.lights.size(); l-- > 0;) {
-    const LightSource& light = setting.lights[l];
+  for (std::size_t l = settings.lights.size(); l-- > 0;) {
+    const LightSource& light = settings.lights[l];
     const std::size_t begin = end - static_cast<std::size_t>(pointsOf(light));
     for (std::size_t p = begin; p < end; ++p) {
-      if (lit[p] == Lit::no) continue;
-      const Color through = lit[p] == Lit::asked ? gathered.light[p] : kWhite;
+      if (lit[p] == LightVisibility::none) continue;
+      const Color through = lit[p] == LightVisibility::traced ? gathered.light[p] : kWhite;
       if (through == kBlack) continue;
       const LightSample& sample = sampleOf(static_cast<std::uint32_t>(l), p - begin, p);
       sum = addLight(sum, surface, facing, sample.toward, sample.factor * (light.color * through));
@@ -54,18 +54,18 @@ Color addLight(Color sum, const Surface& surface, const Facing& facing, Vec3 tow
   return surface.translucency * sum;
 }
 
-Color broughtBack(Color sum, Vec3 origin, Vec3 direction, double distance, double extinct, bool inAir,
-                  const Setting& setting) {
+Color attenuated(Color sum, Vec3 origin, Vec3 direction, double distance, double extinct, bool inAir,
+                 const SceneSettings& settings) {
   if (extinct != 1) sum = std::pow(extinct, distance) * sum;
-  if (inAir && !setting.atmosphere.empty()) sum = throughAir(sum, origin, direction, distance, setting);
+  if (inAir && !settings.atmosphere.empty()) sum = throughAir(sum, origin, direction, distance, settings);
   return sum;
 }
 
-WayBack wayBack(const Ray& ray, double t, const OnwardRays& onward, const Setting& setting) {
-  WayBack back;
+ReturnPath returnPath(const Ray& ray, double t, const OnwardRays& onward, const SceneSettings& settings) {
+  ReturnPath back;
   back.extinct = ray.extinct;
   back.inAir = ray.media.empty();
-  const bool throughAtmosphere = back.inAir && !setting.atmosphere.empty();
+  const bool throughAtmosphere = back.inAir && !settings.atmosphere.empty();
   if (throughAtmosphere) {
     back.origin = ray.origin;
     back.direction = ray.direction;
@@ -79,9 +79,9 @@ WayBack wayBack(const Ray& ray, double t, const OnwardRays& onward, const Settin
 }
 
 Intersection describe(const Ray& ray, double t, const SurfacePoint& at, const Secondary& spawned,
-                      const Setting& setting) {
+                      const SceneSettings& settings) {
   Intersection hit;
-  hit.back = wayBack(ray, t, spawned, setting);
+  hit.back = returnPath(ray, t, spawned, settings);
   hit.direction = ray.direction;
   hit.key = ray.key;
   hit.sample = ray.sample;
@@ -104,38 +104,39 @@ Intersection describe(const Ray& ray, double t, const SurfacePoint& at, const Se
 }
 
 Color addLights(const Ray& ray, const SurfacePoint& at, const Secondary& spawned, const Gathered& gathered,
-                const Setting& setting) {
+                const SceneSettings& settings) {
   const Facing facing{at.normal, at.geometricNormal, at.smooth, mirrored(ray.direction, at.normal)};
-  return addLights(at.surface, facing, spawned.lit, gathered, setting,
+  return addLights(at.surface, facing, spawned.lit, gathered, settings,
                    [&](std::uint32_t, std::size_t, std::size_t point) -> const LightSample& {
                      return spawned.samples[point];
                    });
 }
 
-Color finish(Color sum, const WayBack& back, Color transmitted, Color reflected, const Setting& setting) {
+Color finish(Color sum, const ReturnPath& back, Color transmitted, Color reflected,
+             const SceneSettings& settings) {
   if (back.transmitted) sum = sum + back.transmitWeight * transmitted;
   if (back.reflected) sum = sum + back.reflectWeight * reflected;
-  return broughtBack(sum, back.origin, back.direction, back.distance, back.extinct, back.inAir, setting);
+  return attenuated(sum, back.origin, back.direction, back.distance, back.extinct, back.inAir, settings);
 }
 
-Color combine(const Intersection& hit, const Gathered& gathered, const Setting& setting) {
+Color combine(const Intersection& hit, const Gathered& gathered, const SceneSettings& settings) {
   if (hit.lightsAdded)
-    return finish(*hit.lightsAdded, hit.back, gathered.transmitted, gathered.reflected, setting);
+    return finish(*hit.lightsAdded, hit.back, gathered.transmitted, gathered.reflected, settings);
   const Facing facing{hit.normal, hit.geometricNormal, hit.smooth, mirrored(hit.direction, hit.normal)};
   // The lights are looked at again, with the same answers.
   const Color sum =
-      addLights(hit.surface, facing, hit.lit, gathered, setting,
+      addLights(hit.surface, facing, hit.lit, gathered, settings,
                 [&](std::uint32_t light, std::size_t ofLight, std::size_t) {
-                  return sampleLight(setting.lights[light],
-                                     lightQuery(hit.position, hit.key, hit.sample, light, setting),
+                  return sampleLight(settings.lights[light],
+                                     lightQuery(hit.position, hit.key, hit.sample, light, settings),
                                      static_cast<int>(ofLight));
                 });
-  return finish(sum, hit.back, gathered.transmitted, gathered.reflected, setting);
+  return finish(sum, hit.back, gathered.transmitted, gathered.reflected, settings);
 }
 
-Color missed(const Ray& ray, const Setting& setting) {
-  return broughtBack(setting.background, ray.origin, ray.direction, kFarAway, ray.extinct, ray.media.empty(),
-                     setting);
+Color missed(const Ray& ray, const SceneSettings& settings) {
+  return attenuated(settings.background, ray.origin, ray.direction, kFarAway, ray.extinct, ray.media.empty(),
+                    settings);
 }
 
 }  // namespace rayshade

@@ -14,7 +14,7 @@ namespace rayshade {
 
 // What becomes of the colour of a hit once its lights have been added: what is added then, and its way back along the ray
 // that hit.  What this scene does not ask for stays at its usual value, which costs a bit on the wire.
-struct WayBack {
+struct ReturnPath {
   Vec3 origin, direction;  // of the ray, if the atmosphere asks for them
   double distance = 0;     // t of the hit, if atmosphere or attenuation ask for it
   double extinct = 1;      // of what the ray travelled through, if it counts
@@ -25,7 +25,7 @@ struct WayBack {
 
 // All that combine() needs to know of a hit, and nothing else.
 struct Intersection {
-  WayBack back;
+  ReturnPath back;
   std::optional<Color> lightsAdded;  // if they have been: their sum, and what follows does not count
   Vec3 direction;                    // of the ray that hit
   RandomKey key{};
@@ -34,7 +34,7 @@ struct Intersection {
   bool smooth = false;  // the normal is interpolated: then the geometric one counts too
   Vec3 geometricNormal;
   Surface surface;  // what is seen of it: neither its index nor how much it reflects
-  LightStates lit;
+  LightVisibilities lit;
 };
 
 // The colours that come back, each in its own place.
@@ -43,11 +43,11 @@ struct Gathered {
   Color transmitted, reflected;
 };
 
-WayBack wayBack(const Ray& ray, double t, const OnwardRays& onward, const Setting& setting);
+ReturnPath returnPath(const Ray& ray, double t, const OnwardRays& onward, const SceneSettings& settings);
 Intersection describe(const Ray& ray, double t, const SurfacePoint& at, const Secondary& spawned,
-                      const Setting& setting);
+                      const SceneSettings& settings);
 // The same once the lights have been added.
-inline Intersection afterLights(Color sum, const WayBack& back) {
+inline Intersection afterLights(Color sum, const ReturnPath& back) {
   Intersection hit;
   hit.back = back;
   hit.lightsAdded = sum;
@@ -66,22 +66,23 @@ struct Facing {
 // Adds one point of a light: `toward` it, `light` what arrives from it.
 Color addLight(Color sum, const Surface& surface, const Facing& facing, Vec3 toward, Color light);
 // What is left of a colour at the origin of the ray that brings it.
-Color broughtBack(Color sum, Vec3 origin, Vec3 direction, double distance, double extinct, bool inAir,
-                  const Setting& setting);
+Color attenuated(Color sum, Vec3 origin, Vec3 direction, double distance, double extinct, bool inAir,
+                 const SceneSettings& settings);
 
 // Ambient light and all lights, for those who have what spawnSecondary() has found still at hand.
 Color addLights(const Ray& ray, const SurfacePoint& at, const Secondary& spawned, const Gathered& gathered,
-                const Setting& setting);
+                const SceneSettings& settings);
 // What comes after the lights.
-Color finish(Color sum, const WayBack& back, Color transmitted, Color reflected, const Setting& setting);
+Color finish(Color sum, const ReturnPath& back, Color transmitted, Color reflected,
+             const SceneSettings& settings);
 
-Color combine(const Intersection& hit, const Gathered& gathered, const Setting& setting);
+Color combine(const Intersection& hit, const Gathered& gathered, const SceneSettings& settings);
 
 // The colour of a ray that meets nothing.
-Color missed(const Ray& ray, const Setting& setting);
+Color missed(const Ray& ray, const SceneSettings& settings);
 
 template <class Archive>
-void serialize(Archive& archive, WayBack& b) {
+void serialize(Archive& archive, ReturnPath& b) {
   serializeSparse(archive, Usual{b.origin, Vec3{}}, Usual{b.direction, Vec3{}}, Usual{b.distance, 0.0},
                   Usual{b.extinct, 1.0}, Usual{b.inAir, true}, Usual{b.transmitted, false},
                   Usual{b.reflected, false}, Usual{b.transmitWeight, kBlack}, Usual{b.reflectWeight, kBlack});

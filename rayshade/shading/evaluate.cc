@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rayshade/shading/evaluate.h"
 
-#include "rayshade/space/probe.h"
+#include "rayshade/intersect/ray_hit.h"
 #include "rayshade/textures/apply.h"
 
 namespace rayshade {
 namespace {
 
-// The way of a hit from the space of its shape up to the world, through the frames one by one because the textures of
+// The way of a hit from the space of its shape up to the world, through the nodes one by one because the textures of
 // each work in the space that it leads to.
 class Climb {
  public:
@@ -23,19 +23,19 @@ class Climb {
     place_.rayDirection = shape.ray.direction;
   }
 
-  // From the inside of a frame to the space of its container.  `ofPrimitive` as for applyTexture().
+  // From the inside of a node to the space of its container.  `ofPrimitive` as for applyTexture().
   template <class OfPrimitive>
-  void through(const SceneStore& store, FrameIndex index, const OfPrimitive& ofPrimitive) {
-    for (; index != 0; index = store.frame(index).parent) {
-      const Frame& frame = store.frame(index).frame;
-      const Affine own = chainAt(frame.transforms, moment_);
+  void through(const SceneStore& store, NodeIndex index, const OfPrimitive& ofPrimitive) {
+    for (; index != 0; index = store.node(index).parent) {
+      const SceneNode& node = store.node(index).node;
+      const Affine own = chainAt(node.transforms, moment_);
       place_.object = then(place_.object, own);
       place_.position = mapPoint(own.forward, place_.position);
       place_.rayOrigin = mapPoint(own.forward, place_.rayOrigin);
       place_.rayDirection = mapVector(own.forward, place_.rayDirection);
-      if (!frame.transforms.empty()) hit_.normal = normalize(mapNormal(own.inverse, hit_.normal));
+      if (!node.transforms.empty()) hit_.normal = normalize(mapNormal(own.inverse, hit_.normal));
       place_.geometricNormal = shapeNormal_;
-      for (const PlacedTexture& placed : frame.textures) {
+      for (const PlacedTexture& placed : node.textures) {
         place_.texture = chainAt(placed.transforms, moment_);
         applyTexture(placed.texture, hit_, place_, ofPrimitive);
       }
@@ -74,13 +74,14 @@ const Surface& boundSurface(const Model& model, const HitPath& path) {
   return store.surfaceOrDefault(kNone);
 }
 
-SurfacePoint evaluateSurface(const Model& model, const Hit& hit, const Ray& ray, const Setting& setting) {
+SurfacePoint evaluateSurface(const Model& model, const Hit& hit, const Ray& ray,
+                             const SceneSettings& settings) {
   const SceneStore& store = model.store();
   const PlacedObject& object = store.object(hit.object);
-  const PlacedFrame& frame = store.frame(object.frame);
+  const PlacedNode& node = store.node(object.node);
   const bool shape = object.kind != kInstanceKind && object.kind != kCsgKind;
-  if (!shape || !frame.identity || frame.textured)
-    return evaluateSurface(model, hit, pathTo(model, ray, hit), ray, setting);
+  if (!shape || !node.identity || node.textured)
+    return evaluateSurface(model, hit, pathTo(model, ray, hit), ray, settings);
   // The ordinary case, a shape of the world as it is: the same answers as below without a path.
   const LocalRay local{ray.origin, ray.direction, 1};
   ShapePoint point = withShape(store, object, [&](const auto& body) { return body.pointAt(local, hit.t); });
@@ -96,7 +97,7 @@ SurfacePoint evaluateSurface(const Model& model, const Hit& hit, const Ray& ray,
 }
 
 SurfacePoint evaluateSurface(const Model& model, const Hit& hit, const HitPath& path, const Ray& ray,
-                             const Setting& setting) {
+                             const SceneSettings& settings) {
   const SceneStore& store = model.store();
   const PathStep& last = path.steps[path.steps.size() - 1];
   ShapePoint shapePoint = withShape(store, store.object(last.object), [&](const auto& shape) {
@@ -112,23 +113,23 @@ SurfacePoint evaluateSurface(const Model& model, const Hit& hit, const HitPath& 
   bool textured = false, placed = false;  // placed: in a space other than the world
   Affine toWorld;
   for (std::size_t i = path.steps.size(); i-- > 0;) {
-    const FrameIndex frame = store.object(path.steps[i].object).frame;
-    textured = textured || store.frame(frame).textured;
-    if (store.frame(frame).identity) continue;
+    const NodeIndex node = store.object(path.steps[i].object).node;
+    textured = textured || store.node(node).textured;
+    if (store.node(node).identity) continue;
     placed = true;
-    toWorld = then(toWorld, mapAt(store, frame, ray.moment));
+    toWorld = then(toWorld, mapAt(store, node, ray.moment));
   }
   placed = placed && !isIdentity(toWorld);
   at.surface = boundSurface(model, path);
   at.normal = placed ? normalize(mapNormal(toWorld.inverse, shapePoint.normal)) : shapePoint.normal;
   if (textured) {
-    Climb climb(ray, last, shapePoint, at.surface, setting.samplesPerSide);
+    Climb climb(ray, last, shapePoint, at.surface, settings.samplesPerSide);
     const auto ofPrimitive = [&](Vec3 position) {
       return withShape(store, store.object(last.object),
                        [&](const auto& shape) { return shape.coordinates(shapePoint, position); });
     };
     for (std::size_t i = path.steps.size(); i-- > 0;)
-      climb.through(store, store.object(path.steps[i].object).frame, ofPrimitive);
+      climb.through(store, store.object(path.steps[i].object).node, ofPrimitive);
     at.surface = climb.hit().surface;
     at.normal = climb.hit().normal;
   }

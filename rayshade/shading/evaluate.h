@@ -3,17 +3,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "rayshade/scene/setting.h"
+#include "rayshade/intersect/model.h"
+#include "rayshade/scene/settings.h"
 #include "rayshade/shading/surface_point.h"
-#include "rayshade/space/model.h"
 
 namespace rayshade {
 
 // Requires hit.found().
-SurfacePoint evaluateSurface(const Model& model, const Hit& hit, const Ray& ray, const Setting& setting);
+SurfacePoint evaluateSurface(const Model& model, const Hit& hit, const Ray& ray,
+                             const SceneSettings& settings);
 // The same when pathTo() has been asked already.
 SurfacePoint evaluateSurface(const Model& model, const Hit& hit, const HitPath& path, const Ray& ray,
-                             const Setting& setting);
+                             const SceneSettings& settings);
 
 // The surface that binds a hit, before textures: the innermost of the path from the shape up to the world.
 const Surface& boundSurface(const Model& model, const HitPath& path);

@@ -7,17 +7,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "rayshade/scene/setting.h"
+#include "rayshade/intersect/model.h"
+#include "rayshade/scene/settings.h"
 #include "rayshade/shading/spawn.h"
-#include "rayshade/space/model.h"
 
 namespace rayshade {
 
 // Takes the ray through a region, up to tExit or its light.  False: it ends in darkness.
 bool passShadow(const Model& model, const Region& region, ShadowRay& shadow, double tExit,
-                const Setting& setting);
+                const SceneSettings& settings);
 
 // Takes the ray through a transparent surface that it meets.  False: it ends in darkness.
-bool passSurface(const Model& model, const Hit& hit, ShadowRay& shadow, const Setting& setting);
+bool passSurface(const Model& model, const Hit& hit, ShadowRay& shadow, const SceneSettings& settings);
 
 }  // namespace rayshade

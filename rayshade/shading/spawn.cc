@@ -31,8 +31,8 @@ struct Passage {
   double n1, n2;
   MediumStack behind;
 };
-Passage passage(const Ray& ray, const SurfacePoint& at, const Setting& setting) {
-  auto top = [&](const MediumStack& stack) { return stack.empty() ? setting.airIndex : stack.back().index; };
+Passage passage(const Ray& ray, const SurfacePoint& at, const SceneSettings& settings) {
+  auto top = [&](const MediumStack& stack) { return stack.empty() ? settings.airIndex : stack.back().index; };
   Passage p{top(ray.media), at.surface.index, ray.media};
   if (at.entering) {
     p.behind.push_back({at.surface.index, at.surface.extinct});
@@ -46,57 +46,60 @@ Passage passage(const Ray& ray, const SurfacePoint& at, const Setting& setting) 
 
 }  // namespace
 
-std::size_t lightPointCount(const Setting& setting) {
+std::size_t lightPointCount(const SceneSettings& settings) {
   std::size_t count = 0;
-  for (const LightSource& light : setting.lights) count += static_cast<std::size_t>(pointsOf(light));
+  for (const LightSource& light : settings.lights) count += static_cast<std::size_t>(pointsOf(light));
   return count;
 }
 
-LightPoint lightPoint(const Setting& setting, std::size_t point) {
+LightPoint lightPoint(const SceneSettings& settings, std::size_t point) {
   std::uint32_t light = 0;
-  for (; light + 1 < setting.lights.size(); ++light) {
-    const auto points = static_cast<std::size_t>(pointsOf(setting.lights[light]));
+  for (; light + 1 < settings.lights.size(); ++light) {
+    const auto points = static_cast<std::size_t>(pointsOf(settings.lights[light]));
     if (point < points) break;
     point -= points;
   }
   return {light, static_cast<int>(point)};
 }
 
-LightQuery lightQuery(Vec3 position, RandomKey key, int sample, std::uint32_t light, const Setting& setting) {
-  return {position, child(key, Branch::light, light), sample, setting.samplesPerSide};
+LightQuery lightQuery(Vec3 position, RandomKey key, int sample, std::uint32_t light,
+                      const SceneSettings& settings) {
+  return {position, child(key, Branch::light, light), sample, settings.samplesPerSide};
 }
 
-Lit lit(const LightSource& light, const LightSample& sample, const SurfacePoint& at, const Setting& setting) {
+LightVisibility lit(const LightSource& light, const LightSample& sample, const SurfacePoint& at,
+                    const SceneSettings& settings) {
   const double cosine = lightCosine(sample.toward, at.normal, at.geometricNormal, at.smooth);
-  if (!(sample.factor > 0) || !answers(at.surface, cosine)) return Lit::no;
-  return setting.shadows && light.castsShadows && !at.surface.noShadow ? Lit::asked : Lit::fully;
+  if (!(sample.factor > 0) || !answers(at.surface, cosine)) return LightVisibility::none;
+  return settings.shadows && light.castsShadows && !at.surface.noShadow ? LightVisibility::traced
+                                                                        : LightVisibility::unshadowed;
 }
 
-Secondary spawnSecondary(const Ray& ray, const SurfacePoint& at, const Setting& setting) {
-  Secondary spawned{spawnOnward(ray, at, setting), {}, {}};
-  for (std::uint32_t l = 0; l < setting.lights.size(); ++l) {
-    const LightSource& light = setting.lights[l];
-    const LightQuery query = lightQuery(at.position, ray.key, ray.sample, l, setting);
+Secondary spawnSecondary(const Ray& ray, const SurfacePoint& at, const SceneSettings& settings) {
+  Secondary spawned{spawnOnward(ray, at, settings), {}, {}};
+  for (std::uint32_t l = 0; l < settings.lights.size(); ++l) {
+    const LightSource& light = settings.lights[l];
+    const LightQuery query = lightQuery(at.position, ray.key, ray.sample, l, settings);
     const int points = pointsOf(light);
     for (int i = 0; i < points; ++i) {
       const LightSample sample = sampleLight(light, query, i);
       spawned.samples.push_back(sample);
-      spawned.lit.push_back(lit(light, sample, at, setting));
+      spawned.lit.push_back(lit(light, sample, at, settings));
     }
   }
   return spawned;
 }
 
-OnwardRays spawnOnward(const Ray& ray, const SurfacePoint& at, const Setting& setting) {
+OnwardRays spawnOnward(const Ray& ray, const SurfacePoint& at, const SceneSettings& settings) {
   const Surface& surface = at.surface;
   OnwardRays spawned;
-  if (ray.depth >= setting.limits.maxDepth) return spawned;
+  if (ray.depth >= settings.limits.maxDepth) return spawned;
 
   Color reflectWeight = surface.reflect * surface.specular;
   if (surface.transparency > kNegligible) {
     const Color weight = surface.transparency * surface.body;
-    if (anyAbove(weight * ray.contribution, setting.limits.cutoff)) {
-      Passage through = passage(ray, at, setting);
+    if (anyAbove(weight * ray.contribution, settings.limits.cutoff)) {
+      Passage through = passage(ray, at, settings);
       if (const auto direction = refracted(ray.direction, at.normal, through.n1, through.n2)) {
         spawned.transmitWeight = weight;
         spawned.transmitted = secondaryRay(ray, at, *direction, Branch::transmitted, weight);
@@ -108,7 +111,7 @@ OnwardRays spawnOnward(const Ray& ray, const SurfacePoint& at, const Setting& se
     }
   }
   if (anyAbove(reflectWeight, kNegligible) &&
-      anyAbove(reflectWeight * ray.contribution, setting.limits.cutoff)) {
+      anyAbove(reflectWeight * ray.contribution, settings.limits.cutoff)) {
     spawned.reflectWeight = reflectWeight;
     spawned.reflected = secondaryRay(ray, at, normalize(mirrored(ray.direction, at.normal)),
                                      Branch::reflected, reflectWeight);
@@ -117,12 +120,13 @@ OnwardRays spawnOnward(const Ray& ray, const SurfacePoint& at, const Setting& se
   return spawned;
 }
 
-ShadowRay shadowRay(const Ray& ray, const SurfacePoint& at, const Setting& setting, std::size_t point) {
-  const LightPoint which = lightPoint(setting, point);
-  const LightSource& light = setting.lights[which.light];
+ShadowRay shadowRay(const Ray& ray, const SurfacePoint& at, const SceneSettings& settings,
+                    std::size_t point) {
+  const LightPoint which = lightPoint(settings, point);
+  const LightSource& light = settings.lights[which.light];
   return shadowRay(
       ray, at,
-      sampleLight(light, lightQuery(at.position, ray.key, ray.sample, which.light, setting), which.index));
+      sampleLight(light, lightQuery(at.position, ray.key, ray.sample, which.light, settings), which.index));
 }
 
 ShadowRay shadowRay(const Ray& ray, const SurfacePoint& at, const LightSample& sample) {

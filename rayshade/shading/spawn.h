@@ -9,21 +9,21 @@
 
 #include "rayshade/base/inline_vector.h"
 #include "rayshade/optics/ray.h"
-#include "rayshade/scene/setting.h"
+#include "rayshade/scene/settings.h"
 #include "rayshade/scene/store.h"
 #include "rayshade/shading/surface_point.h"
 
 namespace rayshade {
 
 // What is known of one point of a light at a hit.
-enum class Lit : std::uint8_t {
-  no,     // can't change the colour: it is behind, or the surface does not answer it
-  fully,  // casts no shadow here
-  asked,  // a shadow ray is on its way
+enum class LightVisibility : std::uint8_t {
+  none,        // can't change the colour: it is behind, or the surface does not answer it
+  unshadowed,  // casts no shadow here
+  traced,      // a shadow ray is on its way
 };
 
 // The points of all lights in one row, lights in the order of the file.
-using LightStates = InlineVector<Lit, 8>;
+using LightVisibilities = InlineVector<LightVisibility, 8>;
 using LightSamples = InlineVector<LightSample, 4>;
 
 // A shadow ray: from a hit to a point of a light.
@@ -35,7 +35,7 @@ struct ShadowRay {
   double insideExtinct = 1;  // extinct of the solid it is in, if `inside`
   bool inside = false;
   std::uint32_t tests = 0;           // objects that were tested; not sent
-  ObjectIndex occluder = kNone;      // what to try first, see obstruction(); not sent
+  ObjectIndex occluder = kNone;      // what to try first, see occlusion(); not sent
   std::uint32_t occluderGround = 0;  // where several models are at hand: which one it belongs to; not sent
 };
 
@@ -46,22 +46,23 @@ struct OnwardRays {
 };
 
 struct Secondary : OnwardRays {
-  LightStates lit;
+  LightVisibilities lit;
   LightSamples samples;  // what each point of a light looks like from here
 };
 
-std::size_t lightPointCount(const Setting& setting);
+std::size_t lightPointCount(const SceneSettings& settings);
 
 // What a point of a light, seen as `sample` from the hit, means to it.
-Lit lit(const LightSource& light, const LightSample& sample, const SurfacePoint& at, const Setting& setting);
+LightVisibility lit(const LightSource& light, const LightSample& sample, const SurfacePoint& at,
+                    const SceneSettings& settings);
 
-OnwardRays spawnOnward(const Ray& ray, const SurfacePoint& at, const Setting& setting);
+OnwardRays spawnOnward(const Ray& ray, const SurfacePoint& at, const SceneSettings& settings);
 
 // Both, for all points of all lights.
-Secondary spawnSecondary(const Ray& ray, const SurfacePoint& at, const Setting& setting);
+Secondary spawnSecondary(const Ray& ray, const SurfacePoint& at, const SceneSettings& settings);
 
 // The shadow ray to light point `point` (a position in Secondary::lit whose state is `asked`).
-ShadowRay shadowRay(const Ray& ray, const SurfacePoint& at, const Setting& setting, std::size_t point);
+ShadowRay shadowRay(const Ray& ray, const SurfacePoint& at, const SceneSettings& settings, std::size_t point);
 // The same when the light has been looked at already.
 ShadowRay shadowRay(const Ray& ray, const SurfacePoint& at, const LightSample& sample);
 
@@ -70,10 +71,11 @@ struct LightPoint {
   std::uint32_t light = 0;
   int index = 0;
 };
-LightPoint lightPoint(const Setting& setting, std::size_t point);
+LightPoint lightPoint(const SceneSettings& settings, std::size_t point);
 
 // What a light is asked for at a hit: the same question in spawn and in combine.
-LightQuery lightQuery(Vec3 position, RandomKey key, int sample, std::uint32_t light, const Setting& setting);
+LightQuery lightQuery(Vec3 position, RandomKey key, int sample, std::uint32_t light,
+                      const SceneSettings& settings);
 
 // The cosine that decides on which side of the surface a light is: that of the shading normal, unless that one is
 // interpolated and says "behind" while the surface itself says "in front".

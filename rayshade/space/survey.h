@@ -3,8 +3,8 @@
 #pragma once
 
 #include "rayshade/scene/object_stream.h"
+#include "rayshade/space/bounds_sample.h"
 #include "rayshade/space/density.h"
-#include "rayshade/space/sketch.h"
 
 namespace rayshade {
 
@@ -12,27 +12,26 @@ struct Survey {
   std::uint64_t objects = 0;  // of the world
   Bounds world;               // of the bounded ones, at the exposure of the survey
   DensityGrid density;        // of all of them, for cutting space into cells
-  Sketch sketch;              // of the bounded ones, for predicting where the work will be
+  BoundsSample sample;        // of the bounded ones, for predicting where the work will be
   bool moves = false;         // something moves: another exposure needs another survey
 };
 
 class SurveySink : public SceneSink {
  public:
   explicit SurveySink(const Exposure& exposure)
-      : stream_(exposure,
-                [this](const SceneObject&, const Bounds& bounds, std::span<const FrameItem* const>) {
-                  if (bounds.finite()) survey_.world = join(survey_.world, bounds);
-                  survey_.density.add(bounds);
-                  survey_.sketch.add(bounds);
-                }) {}
+      : stream_(exposure, [this](const SceneObject&, const Bounds& bounds, std::span<const NodeItem* const>) {
+          if (bounds.finite()) survey_.world = join(survey_.world, bounds);
+          survey_.density.add(bounds);
+          survey_.sample.add(bounds);
+        }) {}
 
   void surface(SurfaceId, const Surface&) override {}
-  void frame(FrameId id, Frame frame) override {
-    survey_.moves = survey_.moves || frame.transforms.moves();
-    stream_.frame(id, std::move(frame));
+  void node(NodeId id, SceneNode node) override {
+    survey_.moves = survey_.moves || node.transforms.moves();
+    stream_.node(id, std::move(node));
   }
   void object(SceneObject object) override { stream_.object(std::move(object)); }
-  void settled() override { stream_.settled(); }
+  void endOfStatement() override { stream_.endOfStatement(); }
 
   Survey survey() const {
     Survey done = survey_;

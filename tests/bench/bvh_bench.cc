@@ -8,8 +8,8 @@
 
 #include <cmath>
 
+#include "rayshade/accel/bvh.h"
 #include "rayshade/base/random.h"
-#include "rayshade/space/bvh.h"
 
 namespace rayshade {
 namespace {

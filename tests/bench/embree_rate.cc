@@ -16,10 +16,10 @@
 #include <string>
 #include <vector>
 
-#include "rayshade/render.h"
-#include "rayshade/scene/parser.h"
-#include "rayshade/space/bundle.h"
-#include "rayshade/space/probe.h"
+#include "rayshade/intersect/bundle_hit.h"
+#include "rayshade/intersect/ray_hit.h"
+#include "rayshade/language/parser.h"
+#include "rayshade/trace/render.h"
 
 namespace rayshade {
 namespace {
@@ -99,7 +99,7 @@ int measure(const std::string& file, std::int32_t side) {
     const PlacedObject& placed = whole.store().object(object);
     if (placed.kind != kKindOf<Triangle> || !whole.store().frame(placed.frame).identity) continue;
     triangles.push_back(whole.store().shapes<Triangle>()[placed.body]);
-    model.store().object({ObjectId{static_cast<std::uint32_t>(triangles.size())}, kWorld, kRootFrame,
+    model.store().object({ObjectId{static_cast<std::uint32_t>(triangles.size())}, kWorld, kRootNode,
                           kNoSurface, AnyShape(triangles.back())});
   }
   if (triangles.empty()) {
@@ -132,11 +132,11 @@ int measure(const std::string& file, std::int32_t side) {
     forBundles(rays.size(), [&](std::size_t first, std::size_t count) {
       Segment segments[kBundleSize];
       for (std::size_t i = 0; i < count; ++i) segments[i] = Segment(rays[first + i]);
-      visitTogether(model, region, std::span(segments).first(count), std::span(hits).subspan(first, count));
+      nearestHits(model, region, std::span(segments).first(count), std::span(hits).subspan(first, count));
     });
   });
   seconds.alone = secondsOf([&] {
-    for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = visit(model, region, rays[i], 0, kInfinity);
+    for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = nearestHit(model, region, rays[i], 0, kInfinity);
   });
   seconds.embree = secondsOf([&] {
     RTCIntersectContext context;
@@ -159,9 +159,9 @@ int measure(const std::string& file, std::int32_t side) {
   print("primary", rays.size(), seconds, others);
 
   const auto light =
-      std::find_if(head.setting.lights.begin(), head.setting.lights.end(),
+      std::find_if(head.settings.lights.begin(), head.settings.lights.end(),
                    [](const LightSource& l) { return std::holds_alternative<PointLight>(l.kind); });
-  if (light == head.setting.lights.end()) return 0;
+  if (light == head.settings.lights.end()) return 0;
   const Vec3 lamp = std::get<PointLight>(light->kind).position;
   std::vector<Ray> shadows;
   std::vector<double> distances;
@@ -178,17 +178,17 @@ int measure(const std::string& file, std::int32_t side) {
   seconds.bundles = secondsOf([&] {
     forBundles(shadows.size(), [&](std::size_t first, std::size_t count) {
       Segment segments[kBundleSize];
-      Obstruction met[kBundleSize];
+      Occlusion met[kBundleSize];
       for (std::size_t i = 0; i < count; ++i)
         segments[i] = Segment(shadows[first + i], 0, distances[first + i]);
-      obstructionTogether(model, region, std::span(segments).first(count), met);
+      occlusions(model, region, std::span(segments).first(count), met);
       for (std::size_t i = 0; i < count; ++i) dark[first + i] = met[i].opaque;
     });
   });
   seconds.alone = secondsOf([&] {
     for (std::size_t i = 0; i < shadows.size(); ++i) {
       ObjectIndex occluder = kNone;
-      dark[i] = obstruction(model, region, shadows[i], 0, distances[i], occluder).opaque;
+      dark[i] = occlusion(model, region, shadows[i], 0, distances[i], occluder).opaque;
     }
   });
   seconds.embree = secondsOf([&] {

@@ -11,8 +11,8 @@
 #include <filesystem>
 #include <optional>
 
-#include "pvm/pvm_link.h"
-#include "pvm/virtual_machine.h"
+#include "pvm/link/pvm_link.h"
+#include "pvm/link/virtual_machine.h"
 
 namespace rayshade {
 namespace {

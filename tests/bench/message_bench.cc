@@ -4,8 +4,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <benchmark/benchmark.h>
 
-#include "pvm/inbox.h"
-#include "pvm/shade_task.h"
+#include "pvm/messages/inbox.h"
+#include "pvm/shade/shade_task.h"
 #include "tests/support/null_link.h"
 
 namespace rayshade {
@@ -62,7 +62,7 @@ Expect expectation(RecordId record, std::size_t pending, bool reflected) {
   e.hit.surface.specular = {.5, .5, .5};
   e.hit.lit.resize(3);
   e.gathered.light.resize(3);
-  for (std::size_t i = 0; i < 3; ++i) e.hit.lit[i] = Lit::asked;
+  for (std::size_t i = 0; i < 3; ++i) e.hit.lit[i] = LightVisibility::traced;
   for (std::size_t i = 0; i < pending; ++i) e.pending.push_back(static_cast<Slot>(i));
   e.hit.back.reflected = reflected;
   e.hit.back.reflectWeight = {.5, .5, .5};
@@ -113,7 +113,8 @@ void shade(benchmark::State& state, std::size_t pending, bool reflected) {
   Traffic traffic;
   Configure configure;
   configure.epoch = Epoch{1};
-  for (int i = 0; i < 3; ++i) configure.setting.lights.push_back({PointLight{{4.0 + i, 3, 2}}, kWhite, true});
+  for (int i = 0; i < 3; ++i)
+    configure.settings.lights.push_back({PointLight{{4.0 + i, 3, 2}}, kWhite, true});
   configure.directory.voxelTasks = {TaskId{1}};
   configure.directory.shadeTasks = {TaskId{2}};
   task.on(TaskId{1}, configure);

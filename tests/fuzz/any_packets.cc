@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pvm/pyramid_task.h"
-#include "pvm/shade_task.h"
-#include "pvm/voxel_task.h"
+#include "pvm/shade/shade_task.h"
+#include "pvm/trace/pyramid_task.h"
+#include "pvm/trace/voxel_task.h"
 #include "tests/fuzz/any_input.h"
 #include "tests/support/null_link.h"
 

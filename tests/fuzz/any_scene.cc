@@ -3,8 +3,8 @@
 #include <string_view>
 #include <vector>
 
-#include "rayshade/scene/parser.h"
-#include "rayshade/scene/viewing.h"
+#include "rayshade/language/parser.h"
+#include "rayshade/language/viewing.h"
 #include "tests/fuzz/any_input.h"
 
 namespace rayshade {
@@ -16,32 +16,32 @@ void demand(bool good) {
 
 struct CheckingSink final : SceneSink {
   std::size_t surfaces = 0, objects = 0;
-  std::vector<bool> frames = {true};     // known
-  std::vector<bool> mentioned = {true};  // frames that something stands in
+  std::vector<bool> nodes = {true};      // known
+  std::vector<bool> mentioned = {true};  // nodes that something stands in
 
-  void mention(FrameId frame) {
-    if (mentioned.size() <= number(frame)) mentioned.resize(number(frame) + 1);
-    mentioned[number(frame)] = true;
+  void mention(NodeId node) {
+    if (mentioned.size() <= number(node)) mentioned.resize(number(node) + 1);
+    mentioned[number(node)] = true;
   }
   void demandSurface(SurfaceId surface) const { demand(surface == kNoSurface || number(surface) < surfaces); }
 
   void surface(SurfaceId id, const Surface&) override { demand(number(id) == surfaces++); }
-  void frame(FrameId id, Frame frame) override {
-    demandSurface(frame.surface);
-    mention(frame.parent);
-    if (frames.size() <= number(id)) frames.resize(number(id) + 1);
-    demand(!frames[number(id)]);
-    frames[number(id)] = true;
+  void node(NodeId id, SceneNode node) override {
+    demandSurface(node.surface);
+    mention(node.parent);
+    if (nodes.size() <= number(id)) nodes.resize(number(id) + 1);
+    demand(!nodes[number(id)]);
+    nodes[number(id)] = true;
   }
   void object(SceneObject object) override {
     demand(number(object.id) == objects++);
     demandSurface(object.surface);
-    mention(object.frame);
+    mention(object.node);
     demand(decode<SceneObject>(encode(object)).has_value());
   }
-  void settled() override {
+  void endOfStatement() override {
     for (std::size_t i = 0; i < mentioned.size(); ++i)
-      demand(!mentioned[i] || (i < frames.size() && frames[i]));
+      demand(!mentioned[i] || (i < nodes.size() && nodes[i]));
   }
 };
 

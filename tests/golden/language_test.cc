@@ -15,9 +15,9 @@
 #include <string>
 #include <vector>
 
-#include "rayshade/render.h"
-#include "rayshade/scene/parser.h"
-#include "rayshade/scene/viewing.h"
+#include "rayshade/language/parser.h"
+#include "rayshade/language/viewing.h"
+#include "rayshade/trace/render.h"
 
 namespace rayshade {
 namespace {
@@ -68,8 +68,8 @@ std::vector<Color> renderTiny(const std::string& example) {
   head.picture.width = 16;
   head.picture.height = 12;
   head.picture.window.reset();
-  head.picture.samplesPerSide = head.setting.samplesPerSide = std::min(head.picture.samplesPerSide, 2);
-  scene.setting = head.setting;
+  head.picture.samplesPerSide = head.settings.samplesPerSide = std::min(head.picture.samplesPerSide, 2);
+  scene.settings = head.settings;
   scene.prepare(exposureOf(head.picture, 0));
   std::vector<Color> pixels;
   renderFrame(scene, *viewOf(head.camera, head.picture), head.picture, 0, 0,
@@ -107,7 +107,7 @@ void addKeywords(std::set<std::string>& words) {
 
 TEST(Language, TheManualHasAnExampleOfEveryWord) {
   std::set<std::string> wanted;
-  const std::string source = textOf("rayshade/scene/keywords.cc");
+  const std::string source = textOf("rayshade/language/keywords.cc");
   const std::regex entry("\\{\"([a-z]+)\", Word::");
   for (std::sregex_iterator at(source.begin(), source.end(), entry), end; at != end; ++at)
     wanted.insert((*at)[1]);

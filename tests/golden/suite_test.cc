@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <set>
 
-#include "rayshade/image/picture.h"
+#include "rayshade/image/picture_file.h"
 #include "tests/support/compare_pictures.h"
 #include "tests/support/program.h"
 #include "tests/support/suite.h"

@@ -16,8 +16,8 @@
 #include <sstream>
 #include <thread>
 
-#include "pvm/pvm_link.h"
-#include "pvm/virtual_machine.h"
+#include "pvm/link/pvm_link.h"
+#include "pvm/link/virtual_machine.h"
 #include "tests/support/private_machine.h"
 
 namespace rayshade {

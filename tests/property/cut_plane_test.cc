@@ -8,7 +8,7 @@
 #include <array>
 #include <sstream>
 
-#include "rayshade/render.h"
+#include "rayshade/trace/render.h"
 #include "tests/support/numbers.h"
 #include "tests/support/render_text.h"
 
@@ -70,7 +70,7 @@ TEST(CutPlane, WhatEndsAtACutIsFoundOnBothSides) {
         ray.origin = numbers.point(-20, 20);
         const Vec3 target{side * off, numbers.real(-3, 3), numbers.real(0.1, 0.9)};
         ray.direction = normalize(target - ray.origin);
-        const Hit expected = visit(whole.model, whole.space(), ray, 0, kInfinity);
+        const Hit expected = nearestHit(whole.model, whole.space(), ray, 0, kInfinity);
         found += expected.found();
         ++rays;
         for (const Scene& scene : cut) {

@@ -1,12 +1,12 @@
-// visit() and obstruction() find what a test of every object in turn finds: random scenes of all shapes, in frames, in
+// nearestHit() and occlusion() find what a test of every object in turn finds: random scenes of all shapes, in nodes, in
 // definitions used several times and nested, and as operands of CSG.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "rayshade/space/model.h"
+#include "rayshade/intersect/model.h"
 
 #include <gtest/gtest.h>
 
-#include "rayshade/space/csg.h"
-#include "rayshade/space/probe.h"
+#include "rayshade/intersect/csg.h"
+#include "rayshade/intersect/ray_hit.h"
 #include "tests/support/text_arguments.h"
 
 namespace rayshade {
@@ -40,7 +40,7 @@ std::vector<AnyShape> exampleShapes() {
   return shapes;
 }
 
-// Builds a scene; item numbers count up, so that frames and definitions come before what uses them.
+// Builds a scene; item numbers count up, so that nodes and definitions come before what uses them.
 class SceneMaker {
  public:
   SceneMaker(Random& random, Model& model) : random_(random), store_(model.store()) {
@@ -93,12 +93,12 @@ class SceneMaker {
     object.id = ObjectId{next_++};
     object.surface = SurfaceId{random_.below(2)};
     if (random_.oneIn(2)) {
-      Frame frame;
-      frame.transforms.append(rotation(random_.point(-1, 1), random_.real(0, 360)));
-      if (random_.oneIn(2)) frame.transforms.append(*scaling(random_.point(0.3, 2)));
-      frame.transforms.append(translation(random_.point(-4, 4)));
-      object.frame = FrameId{next_++};
-      store_.frame(object.frame, frame);
+      SceneNode node;
+      node.transforms.append(rotation(random_.point(-1, 1), random_.real(0, 360)));
+      if (random_.oneIn(2)) node.transforms.append(*scaling(random_.point(0.3, 2)));
+      node.transforms.append(translation(random_.point(-4, 4)));
+      object.node = NodeId{next_++};
+      store_.node(object.node, node);
     }
     store_.object(object);
   }
@@ -113,7 +113,7 @@ class SceneMaker {
 double bruteForce(const Model& model, ObjectIndex index, const LocalRay& outer, double tMin) {
   const SceneStore& store = model.store();
   const PlacedObject& object = store.object(index);
-  const LocalRay ray = intoFrame(store, object.frame, outer, {});
+  const LocalRay ray = intoNode(store, object.node, outer, {});
   if (object.kind == kInstanceKind) {
     double nearest = kNoHit;
     for (ObjectIndex member : store.objectsOf(store.instance(object).definition))
@@ -128,7 +128,7 @@ double bruteForce(const Model& model, ObjectIndex index, const LocalRay& outer, 
   });
 }
 
-// Transparent as far as obstruction() has to tell: what may be must be looked at when it is hit.
+// Transparent as far as occlusion() has to tell: what may be must be looked at when it is hit.
 bool mayBeTransparent(const Model& model, ObjectIndex index) {
   const PlacedObject& object = model.store().object(index);
   if (!model.store().anyTransparent()) return false;
@@ -166,7 +166,7 @@ TEST(ModelProperty, VisitAndObstructionFindWhatATestOfEveryObjectFinds) {
                                          precedence(model.store().object(nearest.object))))
           nearest = {t, object};
       }
-      const Hit hit = visit(model, region, ray, tMin, tExit);
+      const Hit hit = nearestHit(model, region, ray, tMin, tExit);
       ASSERT_EQ(hit.t, nearest.t) << "scene " << scene << " ray " << i;
       ASSERT_EQ(hit.object, nearest.object) << "scene " << scene << " ray " << i;
       hits += hit.found();
@@ -175,7 +175,7 @@ TEST(ModelProperty, VisitAndObstructionFindWhatATestOfEveryObjectFinds) {
       for (ObjectIndex hint :
            {kNone, hit.object, objects[random.below(static_cast<std::uint32_t>(objects.size()))]}) {
         ObjectIndex occluder = hint;
-        const Obstruction met = obstruction(model, region, ray, tMin, tExit, occluder);
+        const Occlusion met = occlusion(model, region, ray, tMin, tExit, occluder);
         ASSERT_EQ(met.opaque, opaque) << "scene " << scene << " ray " << i;
         if (!opaque) {
           ASSERT_EQ(met.transparent, transparent);

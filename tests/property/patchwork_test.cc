@@ -1,11 +1,11 @@
 // What a patchwork calls settled is what one process finds that has everything, whichever patches are missing.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "rayshade/patchwork.h"
+#include "rayshade/trace/patchwork.h"
 
 #include <gtest/gtest.h>
 
-#include "rayshade/scene/parser.h"
-#include "rayshade/space/contents.h"
+#include "rayshade/language/parser.h"
+#include "rayshade/space/voxel_bounds.h"
 #include "tests/support/numbers.h"
 #include "tests/support/random_scene.h"
 
@@ -37,7 +37,7 @@ class Cells : public PatchSource {
       for (CellId cell : touched) {
         const auto at = static_cast<std::size_t>(cell);
         inCell[at].push_back(object);
-        contents[at] = join(contents[at], contentOf(model.boundsOf(object), tree, cell));
+        contents[at] = join(contents[at], boundsInCell(model.boundsOf(object), tree, cell));
       }
     }
     Numbers numbers(seed);
@@ -51,9 +51,9 @@ class Cells : public PatchSource {
     patchwork = Patchwork(std::move(boxes));
     everything = model.regionOf({objects.begin(), objects.end()});
   }
-  Ground patch(std::uint32_t number, std::size_t rays) override {
+  RegionRef patch(std::uint32_t number, std::size_t rays) override {
     EXPECT_GT(rays, 0u);
-    return isHere_[number] ? Ground{&model, &regions_[number]} : Ground{};
+    return isHere_[number] ? RegionRef{&model, &regions_[number]} : RegionRef{};
   }
 
   Model model;
@@ -102,7 +102,7 @@ TEST(Patchwork, WhatIsSettledIsRight) {
       std::vector<Patchwork::Light> light(rays.size());
       cells.patchwork.obstruct(cells, shadows, noBegin, light, counts);
       for (std::size_t i = 0; i < rays.size(); ++i) {
-        const Hit hit = visit(cells.model, cells.everything, rays[i], 0, ends[i]);
+        const Hit hit = nearestHit(cells.model, cells.everything, rays[i], 0, ends[i]);
         ASSERT_TRUE(found[i].settled || here < 1);
         open += !found[i].settled;
         if (found[i].settled) {
@@ -113,7 +113,7 @@ TEST(Patchwork, WhatIsSettledIsRight) {
           ASSERT_GE(found[i].hit.t, hit.t);
         }
         ObjectIndex occluder = kNone;
-        const Obstruction met = obstruction(cells.model, cells.everything, rays[i], 0, ends[i], occluder);
+        const Occlusion met = occlusion(cells.model, cells.everything, rays[i], 0, ends[i], occluder);
         switch (light[i]) {
           case Patchwork::Light::dark:
             ASSERT_TRUE(met.opaque);

@@ -8,9 +8,9 @@
 #include <algorithm>
 #include <set>
 
+#include "rayshade/accel/bvh.h"
 #include "rayshade/base/random.h"
 #include "rayshade/shapes/sphere.h"
-#include "rayshade/space/bvh.h"
 #include "rayshade/space/walk.h"
 
 namespace rayshade {

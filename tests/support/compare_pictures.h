@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "rayshade/image/picture.h"
+#include "rayshade/image/picture_file.h"
 
 namespace rayshade {
 

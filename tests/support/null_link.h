@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "pvm/link.h"
+#include "pvm/link/link.h"
 
 namespace rayshade {
 

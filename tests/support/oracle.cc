@@ -5,8 +5,8 @@
 #include <functional>
 #include <stdexcept>
 
+#include "rayshade/accel/bvh.h"
 #include "rayshade/shading/surface_point.h"
-#include "rayshade/space/bvh.h"
 #include "rayshade/space/clip_list.h"
 #include "rayshade/space/walk.h"
 #include "tests/support/exact_geometry.h"

@@ -13,7 +13,7 @@
 #include <optional>
 #include <string>
 
-#include "pvm/virtual_machine.h"
+#include "pvm/link/virtual_machine.h"
 #include "tests/support/scratch_directory.h"
 
 namespace rayshade {

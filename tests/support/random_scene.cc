@@ -70,7 +70,7 @@ class Author {
   }
   void statement(const std::string& line) { text_ += line + "\n"; }
 
-  // ---- the setting
+  // ---- the settings
 
   void head() {
     statement(pick({"screen 16 12", "screen 24 18", "screen 32 24"}));

@@ -33,7 +33,7 @@ Job jobOfText(std::string text) {
 Rendered renderSequentially(const Job& job, std::uint32_t voxels) {
   Scene scene;
   const SceneHead head = job.read(scene.model.store());
-  scene.setting = head.setting;
+  scene.settings = head.settings;
   const View view = viewOf(head.camera, head.picture).value();
   const PixelArea area = pixelArea(head.picture).value();
   Rendered result;
@@ -62,7 +62,7 @@ RenderedByTasks renderByTasks(const Job& job, const HostOptions& hostOptions,
   HostOptions options = hostOptions;
   options.seed = job.options.seed;
   HostTask host(
-      machine, [&](SceneSink& sink) { job.read(sink); }, survey.survey(), head.setting, options);
+      machine, [&](SceneSink& sink) { job.read(sink); }, survey.survey(), head.settings, options);
   RenderedByTasks result;
   const std::int32_t first = head.picture.firstFrame;
   for (std::int32_t frame = first; frame < first + head.picture.frames; ++frame) {

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "pvm/host_task.h"
-#include "pvm/simulated_machine.h"
-#include "rayshade/options.h"
-#include "rayshade/render.h"
+#include "pvm/host/host_task.h"
+#include "pvm/simulation/simulated_machine.h"
+#include "rayshade/program/options.h"
+#include "rayshade/trace/render.h"
 
 namespace rayshade {
 

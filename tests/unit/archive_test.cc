@@ -184,7 +184,7 @@ TEST(InlineVector, KeepsItsElementsWhereverTheyLie) {
     for (int k = 0; k <= i; ++k) ASSERT_EQ(list[static_cast<std::size_t>(k)], k);
   }
   const InlineVector<int, 3> copy = list;
-  list.resize(2, 5);
+  list.assign(2, 5);
   EXPECT_EQ(list[1], 5);
   EXPECT_EQ(copy.size(), 10u);
   EXPECT_EQ(copy[9], 9);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "rayshade/space/bvh.h"
+#include "rayshade/accel/bvh.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "rayshade/cost.h"
+#include "rayshade/space/cost.h"
 
 #include <gtest/gtest.h>
 
@@ -24,8 +24,8 @@ Predicted predict(const std::string& scene) {
   SurveySink sink({});
   const SceneHead head = jobOfText(scene).read(sink);
   const Survey survey = sink.survey();
-  return {predictCost(survey.world, survey.sketch, viewOf(head.camera, head.picture).value(), head.picture,
-                      head.setting)};
+  return {predictCost(survey.world, survey.sample, viewOf(head.camera, head.picture).value(), head.picture,
+                      head.settings)};
 }
 
 // The eye looks along +x; nothing shines unless a test says so.
@@ -81,17 +81,17 @@ TEST(PredictCost, AScaledSceneCostsTheSame) {
 }
 
 TEST(PredictCost, OfAWorldThatIsNoBoxIsNothing) {
-  Sketch sketch;
-  sketch.add({{0, 0, 0}, {1, 1, 1}});
+  BoundsSample sample;
+  sample.add({{0, 0, 0}, {1, 1, 1}});
   SurveySink sink({});
   const SceneHead head = jobOfText("sphere diffuse 1 1 1 1 0 0 0").read(sink);
   const View view = viewOf(head.camera, head.picture).value();
   for (const Bounds& world :
        {Bounds{}, kEverywhere, Bounds{{0, 0, 0}, {0, 0, 0}}, Bounds{{0, 0, 0}, {1e-90, 0, 0}},
         Bounds{{-1e200, 0, 0}, {1e200, 0, 0}}, Bounds{{std::nan(""), 0, 0}, {1, 1, 1}}})
-    EXPECT_TRUE(predictCost(world, sketch, view, head.picture, head.setting).empty());
+    EXPECT_TRUE(predictCost(world, sample, view, head.picture, head.settings).empty());
   const Bounds flat{{0, -1, -1}, {0, 1, 1}};
-  for (const CostBox& c : predictCost(flat, sketch, view, head.picture, head.setting)) {
+  for (const CostBox& c : predictCost(flat, sample, view, head.picture, head.settings)) {
     EXPECT_GT(c.cost, 0);
     EXPECT_FALSE(c.box.empty());
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "rayshade/scene/expression.h"
+#include "rayshade/language/expression_reader.h"
 
 #include <gtest/gtest.h>
 

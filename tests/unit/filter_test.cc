@@ -1,7 +1,7 @@
 // The pixel filter and the cutting out of the window.
 //
 // SPDX-License-Identifier: BSD-3-Clause
-#include "rayshade/image/filter.h"
+#include "rayshade/sampling/filter.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pvm/in_flight.h"
+#include "pvm/host/in_flight.h"
 
 #include <gtest/gtest.h>
 

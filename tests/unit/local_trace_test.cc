@@ -1,14 +1,14 @@
 // Tracing with cells that were fetched finds what tracing with the whole voxels finds, bit for bit, wherever it was
 // interrupted.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "rayshade/local_trace.h"
+#include "rayshade/trace/local_trace.h"
 
 #include <gtest/gtest.h>
 
 #include <memory>
 
+#include "rayshade/language/parser.h"
 #include "rayshade/scene/extract.h"
-#include "rayshade/scene/parser.h"
 #include "tests/support/random_scene.h"
 
 namespace rayshade {
@@ -43,7 +43,7 @@ class Random {
 class CutScene : public VoxelSource {
  public:
   explicit CutScene(std::uint64_t seed) {
-    setting = parseSceneText(randomScene(seed), "text", {}, model.store()).setting;
+    settings = parseSceneText(randomScene(seed), "text", {}, model.store()).settings;
     model.prepare(kExposure);
     Bounds world;
     DensityGrid density;
@@ -70,7 +70,7 @@ class CutScene : public VoxelSource {
   const Region* find(VoxelId voxel) const override { return &regions_[static_cast<std::size_t>(voxel)]; }
 
   Model model;
-  Setting setting;
+  SceneSettings settings;
   BinTree tree;
   std::vector<std::vector<ObjectIndex>> inCell;
 
@@ -85,13 +85,13 @@ class Task final : public GroundSource {
     for (std::uint32_t v = 0; v < voxelCount(scene.tree); ++v) own_.push_back(random.chance(own));
   }
 
-  Ground voxel(VoxelId voxel) override {
+  RegionRef voxel(VoxelId voxel) override {
     if (!own_[static_cast<std::size_t>(voxel)]) return {};
     return {&scene_.model, scene_.find(voxel)};
   }
-  Ground cell(CellId cell) override {
+  RegionRef cell(CellId cell) override {
     const auto& fetched = cells_[static_cast<std::size_t>(cell)];
-    return fetched ? Ground{&fetched->model, &fetched->region} : Ground{};
+    return fetched ? RegionRef{&fetched->model, &fetched->region} : RegionRef{};
   }
   bool has(CellId cell) const { return cells_[static_cast<std::size_t>(cell)] != nullptr; }
   // Over the wire, as another task would send it.
@@ -198,10 +198,11 @@ TEST(LocalTrace, ShadowsAreThoseOfTheVoxels) {
       shadow.occluder = before.occluder;
       shadow.occluderGround = before.occluderGround;
       TraceCounts counts;
-      const Progress expected = followShadow(scene.tree, scene.model, scene, whole, 0, scene.setting, counts);
+      const Progress expected =
+          followShadow(scene.tree, scene.model, scene, whole, 0, scene.settings, counts);
       std::uint32_t unit = 0;
       const LocalProgress got = followFetching(scene, task, random, [&] {
-        return followLocally(scene.tree, task, shadow, unit, scene.setting, counts);
+        return followLocally(scene.tree, task, shadow, unit, scene.settings, counts);
       });
       before = shadow;
       ASSERT_EQ(got.state == LocalProgress::State::hit, expected.state == Progress::State::hit)
@@ -233,15 +234,16 @@ TEST(LocalTrace, AShadowRayMayBeHandedOverWhereItMissedACell) {
       shadow.distance = kInfinity;
       ShadowRay whole = shadow;
       TraceCounts counts;
-      const Progress expected = followShadow(scene.tree, scene.model, scene, whole, 0, scene.setting, counts);
+      const Progress expected =
+          followShadow(scene.tree, scene.model, scene, whole, 0, scene.settings, counts);
       std::uint32_t unit = 0;
-      const LocalProgress local = followLocally(scene.tree, task, shadow, unit, scene.setting, counts);
+      const LocalProgress local = followLocally(scene.tree, task, shadow, unit, scene.settings, counts);
       bool isDark = local.state == LocalProgress::State::hit;
       if (local.state == LocalProgress::State::missing) {
         ++handedOver;
         shadow = decode<ShadowRay>(encode(shadow)).value();
         isDark =
-            followShadow(scene.tree, scene.model, scene, shadow, local.step, scene.setting, counts).state ==
+            followShadow(scene.tree, scene.model, scene, shadow, local.step, scene.settings, counts).state ==
             Progress::State::hit;
       }
       ASSERT_EQ(isDark, expected.state == Progress::State::hit) << "seed " << seed << " ray " << i;

@@ -1,14 +1,14 @@
 // Every message as it really travels: taken from the traffic of simulated renders.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pvm/messages.h"
+#include "pvm/messages/all.h"
 
 #include <gtest/gtest.h>
 
 #include <set>
 
-#include "pvm/pyramid_task.h"
-#include "pvm/shade_task.h"
-#include "pvm/voxel_task.h"
+#include "pvm/shade/shade_task.h"
+#include "pvm/trace/pyramid_task.h"
+#include "pvm/trace/voxel_task.h"
 #include "tests/support/null_link.h"
 #include "tests/support/random_scene.h"
 #include "tests/support/render_text.h"

@@ -1,6 +1,6 @@
 // The cache of other tasks' cells: bounded in bytes, least recently used out first, what is in use stays.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pvm/object_cache.h"
+#include "pvm/trace/object_cache.h"
 
 #include <gtest/gtest.h>
 
@@ -39,13 +39,13 @@ TEST(ObjectCache, ACellIsReadyToBeVisited) {
   ObjectCache cache;
   cache.begin(1 << 20);
   insert(cache, 5, 7);
-  const Ground ground = cache.find(CellId{5});
+  const RegionRef ground = cache.find(CellId{5});
   ASSERT_NE(ground.region, nullptr);
   EXPECT_EQ(ground.region->objects.size(), 7u);
   Ray ray;
   ray.origin = {6, -10, 0};
   ray.direction = {0, 1, 0};
-  const Hit hit = visit(*ground.model, *ground.region, ray, 0, kInfinity);
+  const Hit hit = nearestHit(*ground.model, *ground.region, ray, 0, kInfinity);
   ASSERT_TRUE(hit.found());
   EXPECT_EQ(hit.t, 9);
   EXPECT_EQ(ground.model->store().object(hit.object).id, ObjectId{2});

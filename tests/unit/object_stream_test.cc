@@ -6,8 +6,8 @@
 
 #include <algorithm>
 
-#include "rayshade/scene/parser.h"
-#include "rayshade/space/model.h"
+#include "rayshade/intersect/model.h"
+#include "rayshade/language/parser.h"
 #include "tests/support/random_scene.h"
 
 namespace rayshade {
@@ -16,7 +16,7 @@ namespace {
 struct Placed {
   SceneObject object;
   Bounds bounds;
-  std::vector<FrameItem> frames;
+  std::vector<NodeItem> nodes;
 };
 
 // Several sinks in the place of one.
@@ -26,14 +26,14 @@ class Tee final : public SceneSink {
   void surface(SurfaceId id, const Surface& s) override {
     for (SceneSink* sink : sinks_) sink->surface(id, s);
   }
-  void frame(FrameId id, Frame f) override {
-    for (SceneSink* sink : sinks_) sink->frame(id, f);
+  void node(NodeId id, SceneNode f) override {
+    for (SceneSink* sink : sinks_) sink->node(id, f);
   }
   void object(SceneObject o) override {
     for (SceneSink* sink : sinks_) sink->object(o);
   }
-  void settled() override {
-    for (SceneSink* sink : sinks_) sink->settled();
+  void endOfStatement() override {
+    for (SceneSink* sink : sinks_) sink->endOfStatement();
   }
 
  private:
@@ -44,9 +44,9 @@ class Tee final : public SceneSink {
 struct Both {
   explicit Both(const std::string& text, const Exposure& exposure = {})
       : stream(exposure, [this](const SceneObject& object, const Bounds& bounds,
-                                std::span<const FrameItem* const> frames) {
+                                std::span<const NodeItem* const> nodes) {
           Placed& one = placed.emplace_back(Placed{object, bounds, {}});
-          for (const FrameItem* frame : frames) one.frames.push_back(*frame);
+          for (const NodeItem* node : nodes) one.nodes.push_back(*node);
         }) {
     Tee tee(stream, model.store());
     parseSceneText(text, "text", {}, tee);
@@ -96,18 +96,17 @@ TEST(ObjectStream, AnObjectWithItsFramesAndDefinitionsStandsOnItsOwn) {
       Model model;
       std::vector<Item> items;
       std::uint32_t last = 0;
-      for (const FrameItem& frame : one.frames) {
-        EXPECT_GT(number(frame.id), last) << "frames come in the order of their numbers";
-        last = number(frame.id);
-        items.emplace_back(frame);
+      for (const NodeItem& node : one.nodes) {
+        EXPECT_GT(number(node.id), last) << "nodes come in the order of their numbers";
+        last = number(node.id);
+        items.emplace_back(node);
       }
       addDefinition(both.stream, one.object, items);
       items.emplace_back(one.object);
       for (const Item& item : std::vector<Item>(items)) {
         const SceneObject* object = std::get_if<SceneObject>(&item);
-        const FrameItem* frame = std::get_if<FrameItem>(&item);
-        for (SurfaceId id :
-             {object ? object->surface : kNoSurface, frame ? frame->frame.surface : kNoSurface})
+        const NodeItem* node = std::get_if<NodeItem>(&item);
+        for (SurfaceId id : {object ? object->surface : kNoSurface, node ? node->node.surface : kNoSurface})
           if (const auto surface = both.stream.findSurface(id)) items.emplace_back(SurfaceItem{id, *surface});
       }
       model.take(std::move(items));
@@ -131,9 +130,9 @@ TEST(ObjectStream, TransformsBehindAnAggregateReachItsMembers) {
   EXPECT_EQ(both.placed[1].bounds, padded({{0, 18, -2}, {4, 22, 2}}));
   EXPECT_EQ(both.placed[2].bounds, padded({{0, 20, 0}, {2, 22, 2}}));
   EXPECT_EQ(both.placed[3].bounds, padded({{4, 4, 4}, {6, 6, 6}}));
-  EXPECT_EQ(both.placed[1].frames.size(), 3u);
-  EXPECT_EQ(both.placed[2].frames.size(), 2u);
-  EXPECT_TRUE(both.placed[3].frames.empty());
+  EXPECT_EQ(both.placed[1].nodes.size(), 3u);
+  EXPECT_EQ(both.placed[2].nodes.size(), 2u);
+  EXPECT_TRUE(both.placed[3].nodes.empty());
 }
 
 TEST(ObjectStream, ADefinitionIsReadBackAsOftenAsItIsUsed) {
@@ -164,7 +163,7 @@ TEST(ObjectStream, OfADefinitionThatIsNotThereNothingIsRead) {
   EXPECT_EQ(items, 0) << "the world is not kept";
 }
 
-// More than fits into memory is spooled to disk, and comes back the same; of the frames of the statement an object gets
+// More than fits into memory is spooled to disk, and comes back the same; of the nodes of the statement an object gets
 // its own.
 TEST(ObjectStream, AStatementMayBeLargerThanMemory) {
   std::string text = "list\n";
@@ -172,7 +171,7 @@ TEST(ObjectStream, AStatementMayBeLargerThanMemory) {
     text += "sphere 1 " + std::to_string(i) + " 0 0 rotate 0 0 1 " + std::to_string(i % 360) + "\n";
   Both both(text + "end translate 0 0 7\n");
   expectSame(both, "large list");
-  for (const Placed& one : both.placed) ASSERT_EQ(one.frames.size(), 2u);
+  for (const Placed& one : both.placed) ASSERT_EQ(one.nodes.size(), 2u);
 }
 
 TEST(ObjectStream, SurfacesAreFoundByTheirNumbers) {

@@ -1,6 +1,6 @@
 // Messages gathered into packets: nothing lost, nothing out of order, nothing in the wrong epoch.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pvm/outbox.h"
+#include "pvm/messages/outbox.h"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "rayshade/scene/parser.h"
+#include "rayshade/language/parser.h"
 
 #include <gtest/gtest.h>
 
 #include <map>
 
-#include "rayshade/scene/surface_table.h"
-#include "rayshade/scene/viewing.h"
+#include "rayshade/language/surface_table.h"
+#include "rayshade/language/viewing.h"
 
 namespace rayshade {
 namespace {
@@ -14,19 +14,19 @@ namespace {
 // Keeps everything, and checks the order that SceneSink promises.
 struct Recording final : SceneSink {
   std::map<std::uint32_t, Surface> surfaces;
-  std::map<std::uint32_t, Frame> frames;
+  std::map<std::uint32_t, SceneNode> nodes;
   std::vector<SceneObject> objects;
   int settledCount = 0;
 
   void surface(SurfaceId id, const Surface& surface) override {
     EXPECT_TRUE(surfaces.emplace(number(id), surface).second);
   }
-  void frame(FrameId id, Frame frame) override {
-    EXPECT_NE(id, kRootFrame);
-    if (frame.surface != kNoSurface) {
-      EXPECT_TRUE(surfaces.contains(number(frame.surface)));
+  void node(NodeId id, SceneNode node) override {
+    EXPECT_NE(id, kRootNode);
+    if (node.surface != kNoSurface) {
+      EXPECT_TRUE(surfaces.contains(number(node.surface)));
     }
-    EXPECT_TRUE(frames.emplace(number(id), std::move(frame)).second);
+    EXPECT_TRUE(nodes.emplace(number(id), std::move(node)).second);
   }
   void object(SceneObject object) override {
     EXPECT_EQ(number(object.id), objects.size());
@@ -35,20 +35,20 @@ struct Recording final : SceneSink {
     }
     objects.push_back(std::move(object));
   }
-  void settled() override {
+  void endOfStatement() override {
     ++settledCount;
     for (const SceneObject& o : objects)
-      if (o.frame != kRootFrame) {
-        EXPECT_TRUE(frames.contains(number(o.frame)));
+      if (o.node != kRootNode) {
+        EXPECT_TRUE(nodes.contains(number(o.node)));
       }
-    for (const auto& [id, frame] : frames)
-      if (frame.parent != kRootFrame) {
-        EXPECT_TRUE(frames.contains(number(frame.parent)));
+    for (const auto& [id, node] : nodes)
+      if (node.parent != kRootNode) {
+        EXPECT_TRUE(nodes.contains(number(node.parent)));
       }
   }
 
   double red(SurfaceId id) const { return id == kNoSurface ? -1 : surfaces.at(number(id)).diffuse.r; }
-  const Frame& frameOf(std::size_t object) const { return frames.at(number(objects.at(object).frame)); }
+  const SceneNode& nodeOf(std::size_t object) const { return nodes.at(number(objects.at(object).node)); }
 };
 
 struct Scene {
@@ -212,7 +212,7 @@ TEST(Parser, GivesEveryAggregateItsOwnApplysurf) {
                       "applysurf blue list sphere 1 0 0 0 applysurf green sphere 1 0 0 0 end sphere 1 0 0 0");
   EXPECT_EQ(s->items.red(s->items.objects[0].surface), -1);
   EXPECT_EQ(s->items.red(s->items.objects[1].surface), 2);
-  EXPECT_EQ(s->items.red(s->items.frameOf(0).surface), 3);  // the list's own, taken when it ends
+  EXPECT_EQ(s->items.red(s->items.nodeOf(0).surface), 3);  // the list's own, taken when it ends
   EXPECT_EQ(s->items.red(s->items.objects[2].surface), 3);
 }
 
@@ -231,7 +231,7 @@ TEST(Parser, GivesInstancesTheirSurface) {
 TEST(Parser, TakesTheApplysurfOfTheDefinitionIntoANamedObject) {
   EXPECT_EQ(surfacesOf("applysurf red name n sphere 1 0 0 0 applysurf green object blue n"), (Reds{1, 3}));
   const auto s = good(kSurfaces + "applysurf red name n list sphere 1 0 0 0 end object blue n");
-  EXPECT_EQ(s->items.red(s->items.frameOf(0).surface), 1);
+  EXPECT_EQ(s->items.red(s->items.nodeOf(0).surface), 1);
 }
 
 TEST(Parser, GivesCsgTheSurfaceInForceWhenItEnds) {
@@ -247,16 +247,16 @@ TEST(Parser, NeverGivesApplysurfToAHeightField) {
       (Reds{-1, 2, 5, 6, 1}));
 }
 
-// ---- frames, transforms, textures
+// ---- nodes, transforms, textures
 
 TEST(Parser, GivesAPrimitiveAFrameOnlyWhenItNeedsOne) {
   const auto s =
       good("sphere 1 0 0 0 sphere 1 0 0 0 translate 1 2 3 sphere 1 0 0 0 texture checker diffuse 1 1 1");
-  EXPECT_EQ(s->items.objects[0].frame, kRootFrame);
-  EXPECT_EQ(s->items.frameOf(1).transforms.steps.size(), 1u);
-  EXPECT_TRUE(s->items.frameOf(1).textures.empty());
-  EXPECT_TRUE(s->items.frameOf(2).transforms.empty());
-  EXPECT_EQ(s->items.frameOf(2).textures.size(), 1u);
+  EXPECT_EQ(s->items.objects[0].node, kRootNode);
+  EXPECT_EQ(s->items.nodeOf(1).transforms.steps.size(), 1u);
+  EXPECT_TRUE(s->items.nodeOf(1).textures.empty());
+  EXPECT_TRUE(s->items.nodeOf(2).transforms.empty());
+  EXPECT_EQ(s->items.nodeOf(2).textures.size(), 1u);
 }
 
 TEST(Parser, DissolvesListsAndGrids) {
@@ -264,24 +264,24 @@ TEST(Parser, DissolvesListsAndGrids) {
       "list sphere 1 0 0 0 grid 2 2 2 sphere 1 0 0 0 scale 2 2 2 end translate 1 0 0 end rotate 0 0 1 90");
   ASSERT_EQ(s->items.objects.size(), 2u);
   EXPECT_EQ(s->items.objects[1].container, kWorld);
-  const Frame& own = s->items.frameOf(1);
-  const Frame& grid = s->items.frames.at(number(own.parent));
-  const Frame& list = s->items.frames.at(number(grid.parent));
-  EXPECT_EQ(list.parent, kRootFrame);
-  EXPECT_EQ(s->items.objects[0].frame, grid.parent);
+  const SceneNode& own = s->items.nodeOf(1);
+  const SceneNode& grid = s->items.nodes.at(number(own.parent));
+  const SceneNode& list = s->items.nodes.at(number(grid.parent));
+  EXPECT_EQ(list.parent, kRootNode);
+  EXPECT_EQ(s->items.objects[0].node, grid.parent);
   EXPECT_EQ(mapPoint(chainAt(own.transforms, {}).forward, {1, 0, 0}), (Vec3{2, 0, 0}));
   EXPECT_EQ(mapPoint(chainAt(grid.transforms, {}).forward, {1, 0, 0}), (Vec3{2, 0, 0}));
-  EXPECT_LT(list.parent, s->items.objects[0].frame);  // numbered when they begin
-  EXPECT_LT(s->items.objects[0].frame, own.parent);
+  EXPECT_LT(list.parent, s->items.objects[0].node);  // numbered when they begin
+  EXPECT_LT(s->items.objects[0].node, own.parent);
 }
 
 TEST(Parser, AppliesTransformsInTheOrderWritten) {
   const auto s = good(
       "sphere 1 0 0 0 translate 1 0 0 rotate 0 0 1 90 scale 2 3 4 transform 1 0 0 0 1 0 0 0 1 5 6 7 "
       "transform 0 1 0 -1 0 0 0 0 1");
-  const Frame& frame = s->items.frameOf(0);
-  EXPECT_EQ(frame.transforms.steps.size(), 1u);
-  const Vec3 image = mapPoint(chainAt(frame.transforms, {}).forward, {0, 0, 0});
+  const SceneNode& node = s->items.nodeOf(0);
+  EXPECT_EQ(node.transforms.steps.size(), 1u);
+  const Vec3 image = mapPoint(chainAt(node.transforms, {}).forward, {0, 0, 0});
   EXPECT_NEAR(image.x, -9, 1e-12);
   EXPECT_NEAR(image.y, 5, 1e-12);
   EXPECT_NEAR(image.z, 7, 1e-12);
@@ -290,9 +290,9 @@ TEST(Parser, AppliesTransformsInTheOrderWritten) {
 TEST(Parser, KeepsMovingStepsApart) {
   const auto s = good(
       "define spin (time * 90) sphere 1 0 0 0 scale 2 2 2 scale 2 2 2 rotate 0 0 1 (spin) translate 1 0 0");
-  const Frame& frame = s->items.frameOf(0);
-  ASSERT_EQ(frame.transforms.steps.size(), 3u);
-  const Vec3 image = mapPoint(chainAt(frame.transforms, {1, 0}).forward, {1, 0, 0});
+  const SceneNode& node = s->items.nodeOf(0);
+  ASSERT_EQ(node.transforms.steps.size(), 3u);
+  const Vec3 image = mapPoint(chainAt(node.transforms, {1, 0}).forward, {1, 0, 0});
   EXPECT_NEAR(image.x, 1, 1e-12);
   EXPECT_NEAR(image.y, 4, 1e-12);
 }
@@ -301,11 +301,11 @@ TEST(Parser, GivesTransformsBehindATextureToTheTexture) {
   const auto s = good(
       "sphere 1 0 0 0 scale 2 2 2 texture checker diffuse 1 0 0 scale 3 3 3 translate 1 1 1 texture checker "
       "specpow 2");
-  const Frame& frame = s->items.frameOf(0);
-  ASSERT_EQ(frame.textures.size(), 2u);
-  EXPECT_EQ(frame.transforms.steps.size(), 1u);
-  EXPECT_EQ(mapPoint(chainAt(frame.textures[0].transforms, {}).forward, {1, 0, 0}), (Vec3{4, 1, 1}));
-  EXPECT_TRUE(frame.textures[1].transforms.empty());
+  const SceneNode& node = s->items.nodeOf(0);
+  ASSERT_EQ(node.textures.size(), 2u);
+  EXPECT_EQ(node.transforms.steps.size(), 1u);
+  EXPECT_EQ(mapPoint(chainAt(node.textures[0].transforms, {}).forward, {1, 0, 0}), (Vec3{4, 1, 1}));
+  EXPECT_TRUE(node.textures[1].transforms.empty());
 }
 
 TEST(Parser, RefusesSingularTransforms) {
@@ -332,12 +332,12 @@ TEST(Parser, KeepsNamedObjectsWhole) {
   ASSERT_EQ(s->items.objects.size(), 4u);
   const auto& objects = s->items.objects;
   EXPECT_EQ(number(objects[0].container), 1u);
-  EXPECT_EQ(objects[0].frame, objects[1].frame);
-  EXPECT_EQ(s->items.frameOf(0).parent, kRootFrame);
+  EXPECT_EQ(objects[0].node, objects[1].node);
+  EXPECT_EQ(s->items.nodeOf(0).parent, kRootNode);
   EXPECT_EQ(objects[2].container, kWorld);
-  EXPECT_EQ(objects[2].frame, kRootFrame);
+  EXPECT_EQ(objects[2].node, kRootNode);
   EXPECT_EQ(number(std::get<Instance>(objects[2].body).definition), 1u);
-  EXPECT_NE(objects[3].frame, kRootFrame);
+  EXPECT_NE(objects[3].node, kRootNode);
 }
 
 TEST(Parser, MakesNamesGlobalWhereverTheyAreDefined) {
@@ -364,15 +364,15 @@ TEST(Parser, PutsTheOperandsOfCsgIntoADefinition) {
   const Csg& csg = std::get<Csg>(objects[4].body);
   EXPECT_EQ(csg.operation, CsgOperation::subtract);
   EXPECT_EQ(objects[4].container, kWorld);
-  EXPECT_NE(objects[4].frame, kRootFrame);
+  EXPECT_NE(objects[4].node, kRootNode);
   EXPECT_EQ(objects[0].container, csg.operands);
   EXPECT_EQ(objects[3].container, csg.operands);
   const DefinitionId list = std::get<Instance>(objects[3].body).definition;
   EXPECT_NE(list, csg.operands);
   EXPECT_EQ(objects[1].container, list);
-  EXPECT_EQ(objects[1].frame, kRootFrame);
+  EXPECT_EQ(objects[1].node, kRootNode);
   EXPECT_EQ(objects[2].container, list);
-  EXPECT_EQ(s->items.frameOf(3).transforms.steps.size(), 1u);
+  EXPECT_EQ(s->items.nodeOf(3).transforms.steps.size(), 1u);
 }
 
 TEST(Parser, NestsCsg) {
@@ -456,7 +456,7 @@ TEST(Parser, LeavesOutEmptyAggregates) {
   EXPECT_EQ(firstLine(s->warnings[0]), "s.ray:2:1: warning: empty list: it is left out");
   EXPECT_EQ(firstLine(s->warnings[2]), "s.ray:5:1: warning: object `n` is empty: it is left out");
   EXPECT_EQ(s->items.objects.size(), 1u);
-  EXPECT_TRUE(s->items.frames.empty());
+  EXPECT_TRUE(s->items.nodes.empty());
 }
 
 TEST(Parser, TakesAGridOfBadSizeAsAList) {
@@ -507,12 +507,12 @@ TEST(Parser, StartsFromTheDefaultsOfRayshade) {
   const auto s = good("sphere 1 0 0 0");
   EXPECT_EQ(s->head.camera.eye, (Vec3{0, -10, 0}));
   EXPECT_EQ(s->head.picture.width, 512);
-  EXPECT_EQ(s->head.setting.limits.maxDepth, 5);
-  ASSERT_EQ(s->head.setting.lights.size(), 1u);  // without lights: one from (1, -1, 1)
-  const auto& light = std::get<DirectionalLight>(s->head.setting.lights[0].kind);
+  EXPECT_EQ(s->head.settings.limits.maxDepth, 5);
+  ASSERT_EQ(s->head.settings.lights.size(), 1u);  // without lights: one from (1, -1, 1)
+  const auto& light = std::get<DirectionalLight>(s->head.settings.lights[0].kind);
   EXPECT_NEAR(light.toward.x, std::sqrt(1. / 3), 1e-15);
   EXPECT_NEAR(light.toward.y, -std::sqrt(1. / 3), 1e-15);
-  EXPECT_EQ(s->head.setting.ambient, kWhite);
+  EXPECT_EQ(s->head.settings.ambient, kWhite);
 }
 
 TEST(Parser, ReadsTheViewingStatements) {
@@ -535,20 +535,20 @@ TEST(Parser, ReadsTheViewingStatements) {
   EXPECT_EQ(h.picture.window, (std::array<std::int32_t, 4>{1, 2, 3, 4}));
   EXPECT_EQ(h.picture.crop, (std::array<double, 4>{.1, .9, 0, 1}));
   EXPECT_EQ(h.picture.samplesPerSide, 4);
-  EXPECT_EQ(h.setting.samplesPerSide, 4);
+  EXPECT_EQ(h.settings.samplesPerSide, 4);
   EXPECT_FALSE(h.picture.jitter);
   EXPECT_TRUE(h.picture.filter.gaussian);
   EXPECT_EQ(h.picture.filter.width, 1.8);
   EXPECT_EQ(h.picture.contrast, (Color{.1, .2, .3}));
-  EXPECT_EQ(h.setting.limits.cutoff, (Color{.5, .5, .5}));
-  EXPECT_EQ(h.setting.limits.maxDepth, 0);
-  EXPECT_EQ(h.setting.background, (Color{.7, .8, .9}));
+  EXPECT_EQ(h.settings.limits.cutoff, (Color{.5, .5, .5}));
+  EXPECT_EQ(h.settings.limits.maxDepth, 0);
+  EXPECT_EQ(h.settings.background, (Color{.7, .8, .9}));
   EXPECT_EQ(h.outputFile, "dir/out.png");
   EXPECT_EQ(h.picture.frames, 3);
   EXPECT_EQ(h.picture.frameLength, .5);
   EXPECT_EQ(h.picture.startTime, 2);
   EXPECT_EQ(h.picture.shutter, .1);
-  EXPECT_FALSE(h.setting.transparentShadows);
+  EXPECT_FALSE(h.settings.transparentShadows);
 }
 
 TEST(Parser, LetsLaterStatementsOverrideEarlierOnes) {
@@ -559,9 +559,9 @@ TEST(Parser, LetsLaterStatementsOverrideEarlierOnes) {
   EXPECT_FALSE(s->head.camera.verticalFov.has_value());
   EXPECT_FALSE(s->head.picture.filter.gaussian);
   EXPECT_EQ(s->head.picture.filter.width, 3);
-  EXPECT_EQ(s->head.setting.limits.cutoff, (Color{1, 2, 3}));
+  EXPECT_EQ(s->head.settings.limits.cutoff, (Color{1, 2, 3}));
   EXPECT_EQ(s->head.picture.width, 10);
-  EXPECT_TRUE(s->head.setting.transparentShadows);
+  EXPECT_TRUE(s->head.settings.transparentShadows);
   EXPECT_EQ(s->head.outputFile, "a");
   EXPECT_EQ(s->head.camera.eye, (Vec3{1, 2, 3}));
   EXPECT_EQ(s->warnings.size(), 2u);
@@ -584,7 +584,7 @@ TEST(Parser, KeepsLightsInTheirOrder) {
       "light .5 ambient light 1 point 0 0 1 light 1 2 3 directional 0 0 2 noshadow light (1 - .5) extended "
       ".5 0 0 1 "
       "light 1 area 0 0 5 1 0 5 4 0 1 5 4 light 1 spot 0 0 5 0 0 0 1 20 30 noshadow light .1 .2 .3 ambient");
-  const auto& lights = s->head.setting.lights;
+  const auto& lights = s->head.settings.lights;
   ASSERT_EQ(lights.size(), 5u);
   EXPECT_TRUE(std::holds_alternative<PointLight>(lights[0].kind));
   EXPECT_EQ(lights[1].color, (Color{1, 2, 3}));
@@ -592,7 +592,7 @@ TEST(Parser, KeepsLightsInTheirOrder) {
   EXPECT_EQ(lights[2].color, (Color{.5, .5, .5}));
   EXPECT_TRUE(lights[3].castsShadows);
   EXPECT_FALSE(lights[4].castsShadows);
-  EXPECT_EQ(s->head.setting.ambient, (Color{.1, .2, .3}));
+  EXPECT_EQ(s->head.settings.ambient, (Color{.1, .2, .3}));
 }
 
 TEST(Parser, SaysWhatIsWrongWithALight) {
@@ -603,9 +603,9 @@ TEST(Parser, SaysWhatIsWrongWithALight) {
 
 TEST(Parser, ReadsTheAtmosphere) {
   const auto s = good("atmosphere 1.5 fog 1 1 1 2 2 2 mist 1 1 1 2 2 2 0 1");
-  EXPECT_EQ(s->head.setting.airIndex, 1.5);
-  EXPECT_EQ(s->head.setting.atmosphere.size(), 2u);
-  EXPECT_EQ(good("atmosphere fog 1 1 1 2 2 2 atmosphere 2")->head.setting.atmosphere.size(), 0u);
+  EXPECT_EQ(s->head.settings.airIndex, 1.5);
+  EXPECT_EQ(s->head.settings.atmosphere.size(), 2u);
+  EXPECT_EQ(good("atmosphere fog 1 1 1 2 2 2 atmosphere 2")->head.settings.atmosphere.size(), 0u);
   EXPECT_NE(errorOf("atmosphere 0"), "");
 }
 

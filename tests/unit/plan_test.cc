@@ -1,14 +1,14 @@
 // --plan says what would happen; --table says what has happened.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pvm/plan.h"
+#include "pvm/schedule/plan.h"
 
 #include <gtest/gtest.h>
 
 #include <map>
 #include <sstream>
 
-#include "pvm/division.h"
-#include "pvm/task_table.h"
+#include "pvm/program/task_table.h"
+#include "pvm/schedule/division.h"
 #include "tests/support/random_scene.h"
 #include "tests/support/render_text.h"
 
@@ -49,7 +49,7 @@ struct Surveyed {
   Survey survey;
   SceneHead head;
   View view = viewOf(head.camera, head.picture).value();
-  Sight sight() const { return {view, head.picture, head.setting}; }
+  Sight sight() const { return {view, head.picture, head.settings}; }
 };
 Surveyed surveyOf(const std::string& scene) {
   SurveySink sink({});
@@ -60,8 +60,8 @@ std::string planOf(const std::string& scene, const std::vector<HostInfo>& hosts,
   const Surveyed s = surveyOf(scene);
   FeatureSink features;
   jobOfText(scene).read(features);
-  const Needs needs = needsOf(scenePlan(features.features(), s.head), s.survey.objects);
-  return describePlan(hosts, options, s.survey, s.sight(), needs);
+  const SceneWork work = sceneWork(scenePlan(features.features(), s.head), s.survey.objects);
+  return describePlan(hosts, options, s.survey, s.sight(), work);
 }
 std::vector<std::string> lines(const std::string& text) {
   std::vector<std::string> all;

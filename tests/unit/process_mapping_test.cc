@@ -1,6 +1,6 @@
 // Figure 6 of the paper: which task runs where.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pvm/process_mapping.h"
+#include "pvm/schedule/process_mapping.h"
 
 #include <gtest/gtest.h>
 

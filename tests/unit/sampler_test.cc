@@ -1,7 +1,7 @@
 // The sampler: positions and strata, and that its rows are those of the plain rule for any order of supply.
 //
 // SPDX-License-Identifier: BSD-3-Clause
-#include "rayshade/image/sampler.h"
+#include "rayshade/sampling/sampler.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include <numeric>
 #include <random>
 
-#include "rayshade/image/filter.h"
+#include "rayshade/sampling/filter.h"
 
 namespace rayshade {
 namespace {

@@ -1,6 +1,6 @@
 // What a plan rules out does not happen: plans against what is counted while the same scene is rendered.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "rayshade/scene_plan.h"
+#include "rayshade/program/scene_plan.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pvm/shade_ledger.h"
+#include "pvm/shade/shade_ledger.h"
 
 #include <gtest/gtest.h>
 
@@ -14,12 +14,12 @@ using Verdict = ShadeLedger::Verdict;
 Expect expectation(RecordId record) {
   Expect e;
   e.record = record;
-  e.hit.lit.resize(3);
-  e.hit.lit[0] = Lit::no;
-  e.hit.lit[1] = Lit::asked;
-  e.hit.lit[2] = Lit::asked;
+  e.hit.lit.assign(3);
+  e.hit.lit[0] = LightVisibility::none;
+  e.hit.lit[1] = LightVisibility::traced;
+  e.hit.lit[2] = LightVisibility::traced;
   e.hit.back.transmitted = e.hit.back.reflected = true;
-  e.gathered.light.resize(3);
+  e.gathered.light.assign(3);
   e.gathered.light[1] = {1, 2, 3};
   e.pending.push_back(2);
   e.to = {TaskId{5}, 77, 4};
@@ -33,7 +33,7 @@ Verdict arrive(ShadeLedger& ledger, const Answer& answer) {
   return ledger.arrive(answer.record, answer.slot, answer.color);
 }
 
-void expectWhole(const Settled& settled) {
+void expectWhole(const CompleteRecord& settled) {
   EXPECT_EQ(settled.to.record, 77u);
   ASSERT_EQ(settled.gathered.light.size(), 3u);
   EXPECT_EQ(settled.gathered.light[1], (Color{1, 2, 3}));
@@ -52,9 +52,9 @@ TEST(ShadeLedger, AnyOrderOfArrivalGivesTheSame) {
     for (std::size_t i = 0; i < 4; ++i) {
       const Verdict verdict =
           order[i] == 3 ? ledger.expect(expectation(9)) : arrive(ledger, kAnswers[order[i]]);
-      ASSERT_EQ(verdict, i == 3 ? Verdict::settled : Verdict::waiting) << "orders so far: " << orders;
+      ASSERT_EQ(verdict, i == 3 ? Verdict::complete : Verdict::waiting) << "orders so far: " << orders;
     }
-    expectWhole(ledger.settled());
+    expectWhole(ledger.complete());
     EXPECT_EQ(ledger.open(), 0u);
     ++orders;
   } while (std::next_permutation(order.begin(), order.end()));
@@ -66,8 +66,8 @@ TEST(ShadeLedger, WhatLacksNothingIsSettledAtOnce) {
   ledger.begin(0, 1);
   Expect e;
   e.to.record = 6;
-  EXPECT_EQ(ledger.expect(std::move(e)), Verdict::settled);
-  EXPECT_EQ(ledger.settled().to.record, 6u);
+  EXPECT_EQ(ledger.expect(std::move(e)), Verdict::complete);
+  EXPECT_EQ(ledger.complete().to.record, 6u);
   EXPECT_EQ(ledger.open(), 0u);
 }
 
@@ -77,7 +77,7 @@ TEST(ShadeLedger, WhatDoesNotFitIsRefused) {
   EXPECT_EQ(ledger.expect(expectation(9)), Verdict::refused) << "three light points where there are two";
   ledger.begin(3, 1);
   Expect wrong = expectation(9);
-  wrong.hit.lit[0] = static_cast<Lit>(3);
+  wrong.hit.lit[0] = static_cast<LightVisibility>(3);
   EXPECT_EQ(ledger.expect(std::move(wrong)), Verdict::refused) << "a light in no known state";
   EXPECT_EQ(ledger.expect(expectation(recordOf(1, 0))), Verdict::refused) << "found by nobody";
   EXPECT_EQ(ledger.expect(expectation(recordOf(0, 1u << 30))), Verdict::refused)
@@ -90,8 +90,8 @@ TEST(ShadeLedger, WhatDoesNotFitIsRefused) {
   EXPECT_EQ(arrive(ledger, kAnswers[0]), Verdict::waiting);
   EXPECT_EQ(arrive(ledger, kAnswers[0]), Verdict::refused) << "the same slot twice";
   EXPECT_EQ(arrive(ledger, kAnswers[1]), Verdict::waiting);
-  EXPECT_EQ(arrive(ledger, kAnswers[2]), Verdict::settled);
-  expectWhole(ledger.settled());
+  EXPECT_EQ(arrive(ledger, kAnswers[2]), Verdict::complete);
+  expectWhole(ledger.complete());
   EXPECT_EQ(arrive(ledger, kAnswers[0]), Verdict::refused) << "a record that is closed";
 }
 
@@ -110,8 +110,8 @@ TEST(ShadeLedger, RecordsCloseInAnyOrder) {
       const RecordId record = records[(i * 13 + 5) % records.size()];
       for (const Answer& answer : kAnswers)
         EXPECT_EQ(ledger.arrive(record, answer.slot, answer.color),
-                  answer.slot == kReflectedSlot ? Verdict::settled : Verdict::waiting);
-      expectWhole(ledger.settled());
+                  answer.slot == kReflectedSlot ? Verdict::complete : Verdict::waiting);
+      expectWhole(ledger.complete());
     }
     EXPECT_EQ(ledger.open(), 0u);
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "rayshade/scene/tokens.h"
+#include "rayshade/language/tokens.h"
 
 #include <gtest/gtest.h>
 

@@ -10,7 +10,7 @@
 #include <variant>
 #include <vector>
 
-#include "pvm/inbox.h"
+#include "pvm/messages/inbox.h"
 
 namespace rayshade {
 namespace {
@@ -100,7 +100,7 @@ TEST(WireFormat, TheExampleIsWhatTheCodeWrites) {
 
 // Names as they stand in the code, because a program does not know the names of its types.
 std::vector<std::string> namesOfMessages() {
-  const std::string source = textOf("pvm/messages.h");
+  const std::string source = textOf("pvm/messages/all.h");
   std::smatch list;
   std::vector<std::string> names;
   if (!std::regex_search(source, list, std::regex("using AllMessages =\\s*TypeList<([A-Za-z,\\s]*)>")))

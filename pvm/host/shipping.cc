@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pvm/host/shipping.h"
+
+#include <algorithm>
+
+namespace rayshade {
+namespace {
+
+std::size_t sizeOf(const Item& item) { return encode(item).size(); }
+
+}  // namespace
+
+Shipping::Shipping(ObjectStream& stream, const BinTree& tree, const Directory& directory,
+                   std::set<std::uint32_t> targets, Send send)
+    : stream_(stream),
+      tree_(tree),
+      directory_(directory),
+      targets_(std::move(targets)),
+      send_(std::move(send)) {}
+
+void Shipping::add(std::uint32_t task, Item item) {
+  Parcel& parcel = parcels_[task];
+  parcel.bytes += sizeOf(item);
+  parcel.batch.items.push_back(std::move(item));
+  if (parcel.bytes < kBatchBytes) return;
+  send_(task, std::move(parcel.batch));
+  parcel.batch.items.clear();
+  parcel.bytes = 0;
+}
+
+void Shipping::addSurface(std::uint32_t task, SurfaceId id) {
+  std::set<std::uint32_t>& sent = parcels_[task].surfaces;
+  if (sent.size() >= kRemembered) sent.clear();
+  if (id == kNoSurface || !sent.insert(number(id)).second) return;
+  if (const auto surface = stream_.findSurface(id)) add(task, SurfaceItem{id, *surface});
+}
+
+void Shipping::addFrame(std::uint32_t task, const NodeItem& node) {
+  // Sending a node again does no harm; remembering every node of a large scene would.
+  std::set<std::uint32_t>& sent = parcels_[task].nodes;
+  if (sent.size() >= kRemembered) sent.clear();
+  if (!sent.insert(number(node.id)).second) return;
+  addSurface(task, node.node.surface);
+  add(task, node);
+}
+
+// What an object refers to: its surface and, all the way down, its definition.
+void Shipping::addNeeds(std::uint32_t task, const SceneObject& object) {
+  addSurface(task, object.surface);
+  DefinitionId definition = kWorld;
+  if (const Instance* instance = std::get_if<Instance>(&object.body)) definition = instance->definition;
+  if (const Csg* csg = std::get_if<Csg>(&object.body)) definition = csg->operands;
+  if (definition == kWorld || !parcels_[task].definitions.insert(number(definition)).second) return;
+  stream_.readDefinition(definition, [&](const Item& item) {
+    if (const NodeItem* node = std::get_if<NodeItem>(&item)) addFrame(task, *node);
+    if (const SceneObject* inside = std::get_if<SceneObject>(&item)) {
+      addNeeds(task, *inside);
+      add(task, *inside);
+    }
+  });
+}
+
+void Shipping::object(const SceneObject& object, const Bounds& bounds,
+                      std::span<const NodeItem* const> nodes) {
+  touched_.clear();
+  voxelsTouching(tree_, bounds, touched_);
+  std::vector<std::uint32_t> tasks;
+  for (VoxelId voxel : touched_) {
+    for (std::uint32_t cluster = 0; cluster < directory_.clusters; ++cluster) {
+      const std::uint32_t task =
+          cluster * directory_.tasksPerCluster() + directory_.voxels[static_cast<std::size_t>(voxel)];
+      if (targets_.contains(task) && std::find(tasks.begin(), tasks.end(), task) == tasks.end())
+        tasks.push_back(task);
+    }
+  }
+  for (std::uint32_t task : tasks) {
+    for (const NodeItem* node : nodes) addFrame(task, *node);
+    addNeeds(task, object);
+    add(task, object);
+    ++shipped_;
+  }
+}
+
+void Shipping::finish() {
+  for (auto& [task, parcel] : parcels_) {
+    if (parcel.batch.items.empty()) continue;
+    send_(task, std::move(parcel.batch));
+    parcel.batch.items.clear();
+  }
+}
+
+}  // namespace rayshade

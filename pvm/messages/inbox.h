@@ -1,0 +1,76 @@
+// Packets in: decoding, the check of epochs, and one `on` per message.
+//
+// A task lists what it accepts, `using Accepted = TypeList<...>`, and has a member `on(TaskId from, M&& message)` for each;
+// a message that is listed and not handled does not compile.  What is not listed, malformed or left over at the end of
+// a packet is refused and counted; so is work of another epoch.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "pvm/messages/outbox.h"
+
+namespace rayshade {
+
+namespace inbox_detail {
+
+template <class M, class List>
+inline constexpr bool kListed = PositionIn<M, List>::value < List::size;
+
+// Decodes and delivers one message of type M.  False: the packet is malformed.
+template <class M, class Task>
+bool deliver(Task& task, TaskId from, Epoch epoch, Reader& reader, Traffic& traffic) {
+  M message{};
+  reader(message);
+  if (!reader.ok()) return false;
+  ++traffic.messagesIn;
+  if constexpr (kListed<M, typename Task::Accepted>) {
+    static_assert(
+        requires { task.on(from, std::move(message)); }, "an accepted message has no handler");
+    // Epochs are counted from 1: before the first Configure a task has nothing that it could work with.
+    if (!M::isFact && (epoch != task.epoch() || epoch == Epoch{})) {
+      ++traffic.stale;
+    } else {
+      task.on(from, std::move(message));
+    }
+  } else {
+    ++traffic.refused;
+  }
+  return true;
+}
+
+// By tag.
+template <class Task>
+struct Deliveries {
+  using Deliver = bool (*)(Task&, TaskId, Epoch, Reader&, Traffic&);
+  std::array<Deliver, AllMessages::size> of{};
+  constexpr Deliveries() {
+    std::size_t tag = 0;
+    AllMessages::forEach([&]<class M>() { of[tag++] = &deliver<M, Task>; });
+  }
+};
+
+}  // namespace inbox_detail
+
+template <class Task>
+void receivePacket(Task& task, TaskId from, std::span<const std::byte> bytes, Traffic& traffic) {
+  ++traffic.packetsIn;
+  traffic.bytesIn += bytes.size();
+  Reader reader(bytes);
+  std::uint8_t version = 0;
+  Epoch epoch{};
+  reader(version, epoch);
+  if (!reader.ok() || version != kWireVersion) {
+    ++traffic.refused;
+    return;
+  }
+  static constexpr inbox_detail::Deliveries<Task> kDeliveries;
+  while (reader.left() > 0) {
+    std::uint8_t tag = 0;
+    reader(tag);
+    if (tag >= kDeliveries.of.size() || !kDeliveries.of[tag](task, from, epoch, reader, traffic)) {
+      ++traffic.refused;
+      return;
+    }
+  }
+}
+
+}  // namespace rayshade

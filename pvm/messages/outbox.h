@@ -1,0 +1,78 @@
+// Messages on their way out, gathered into packets.
+//
+// One packet per destination is open; it goes when it is full, or when the task has nothing better to do.  Measured on one
+// host: 0.15 million rays a second with one ray per packet, 3 million with 64, 10 million with 512 (64 KB).
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <unordered_map>
+
+#include "pvm/messages/all.h"
+
+namespace rayshade {
+
+struct Traffic {
+  std::uint64_t messagesIn = 0, messagesOut = 0, packetsIn = 0, packetsOut = 0, bytesIn = 0, bytesOut = 0;
+  std::uint64_t refused = 0, stale = 0;
+};
+
+class Outbox {
+ public:
+  static constexpr std::size_t kFull = 48 * 1024;  // bytes; leaves room for a last large message below 64 KB
+  static constexpr std::size_t kRoom = 4 * 1024;   // for the last message, as a rule
+
+  explicit Outbox(Link& link) : link_(link) {}
+
+  template <class M>
+  void post(TaskId to, const M& message) {
+    Open& open = packetTo(to);
+    Writer{open.bytes}(static_cast<std::uint8_t>(PositionIn<M, AllMessages>::value), message);
+    ++traffic.messagesOut;
+    if (open.bytes.size() >= kFull) send(open);
+  }
+
+  void flush() {
+    for (auto& [key, open] : open_)
+      if (!open.bytes.empty()) send(open);
+  }
+
+  // Packets carry their epoch, so what is open belongs to the old one and goes first.
+  void beginEpoch(Epoch epoch) {
+    flush();
+    open_.clear();
+    last_ = nullptr;
+    epoch_ = epoch;
+  }
+
+  Traffic traffic;
+
+ private:
+  struct Open {
+    TaskId to = kNobody;
+    Bytes bytes;
+  };
+  Open& packetTo(TaskId to) {
+    if (last_ == nullptr || last_->to != to) {
+      last_ = &open_[static_cast<std::int32_t>(to)];
+      last_->to = to;
+    }
+    if (last_->bytes.empty()) {
+      last_->bytes.reserve(kFull + kRoom);
+      Writer{last_->bytes}(kWireVersion, epoch_);
+    }
+    return *last_;
+  }
+  void send(Open& open) {
+    traffic.bytesOut += open.bytes.size();
+    ++traffic.packetsOut;
+    link_.send(open.to, open.bytes);
+    open.bytes.clear();
+  }
+
+  Link& link_;
+  Epoch epoch_{};
+  std::unordered_map<std::int32_t, Open> open_;  // node-based: last_ stays valid
+  Open* last_ = nullptr;
+};
+
+}  // namespace rayshade

@@ -1,0 +1,207 @@
+// Work: rays, the colours that they bring, and the intersections that wait for them (Reinhard & Jansen, figures 2 and 3).
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "pvm/messages/addresses.h"
+#include "rayshade/sampling/sampler.h"
+#include "rayshade/shading/combine.h"
+
+namespace rayshade {
+
+// Follow this ray from position `step` of its walk.
+struct RayTask {
+  static constexpr bool isFact = false;
+  Ray ray;
+  std::uint32_t step = 0;
+  ReplyTo to;
+};
+
+// How far a shadow ray has come on its way to a light point.
+struct ShadowTravel {
+  Slot slot = 0;  // the light point
+  std::uint32_t step = 0;
+  Vec3 origin, direction;
+  double distance = 0;     // of the light
+  Color through = kWhite;  // what has been let through so far; the rest as in ShadowRay
+  double last = 0, insideExtinct = 1;
+  bool inside = false;
+};
+
+// What shadow rays of one intersection have in common.
+struct ShadowHead {
+  TaskId shader = kNobody;  // who waits for their colours, in this record
+  RecordId record = 0;
+  Moment moment;
+  std::int32_t sample = 0;
+  RandomKey key{};
+};
+// Follow these shadow rays of one intersection.
+struct ShadowTask {
+  static constexpr bool isFact = false;
+  ShadowHead head;
+  InlineVector<ShadowTravel, 4> rays;  // at least one
+};
+ShadowTravel travelOf(const ShadowRay& shadow, Slot slot, std::uint32_t step);
+ShadowRay shadowOf(const ShadowHead& head, const ShadowTravel& travel);
+
+// Light that arrives at an intersection.
+struct LightAnswer {
+  Slot slot = 0;
+  Color color;
+};
+struct LightAnswers {
+  static constexpr bool isFact = false;
+  RecordId record = 0;
+  InlineVector<LightAnswer, 8> colors;
+};
+
+// To a shade task: an intersection whose colours will come, or have come, to `record`; its own colour goes to `to`.
+// Colours that were known at once travel with it.
+struct Expect {
+  static constexpr bool isFact = false;
+  RecordId record = 0;
+  ReplyTo to;
+  Intersection hit;
+  Gathered gathered;              // black where a colour is still to come
+  InlineVector<Slot, 8> pending;  // light points whose colour will come in LightAnswers, ascending
+};
+
+// From a pyramid task: it could do with a pyramid.
+struct PyramidWanted {
+  static constexpr bool isFact = false;
+};
+
+// Follow the primary rays of these samples: to a pyramid task, the samples of a tile, which make one pyramid; to a
+// voxel-trace task, samples whose rays as a rule begin in its voxels.  Sample i is record firstRecord + i of the host.
+struct PrimaryRays {
+  static constexpr bool isFact = false;
+  RecordId firstRecord = 0;
+  std::vector<SampleId> samples;
+};
+
+// Are there any, and are they samples of this picture?
+bool samplesFit(const PrimaryRays& message, const PictureSpec& picture);
+
+// A colour comes home.
+struct Answer {
+  static constexpr bool isFact = false;
+  RecordId record = 0;
+  Slot slot = 0;
+  Color color;
+};
+
+// The same for samples, to the host: the colour of record first + i for each i.
+struct SampleColors {
+  static constexpr bool isFact = false;
+  RecordId first = 0;
+  std::vector<Color> colors;
+};
+
+// A list whose elements are `leastBytes` at least on the wire.
+template <class Archive, class List, class Element>
+void serializeEach(Archive& archive, List& list, std::size_t leastBytes, Element element) {
+  auto size = static_cast<std::uint32_t>(list.size());
+  archive(size);
+  if constexpr (Archive::kReading) {
+    list.clear();
+    if (size > archive.left() / leastBytes) return archive.fail();
+    for (std::uint32_t i = 0; i < size && archive.ok(); ++i) {
+      element(list.emplace_back());
+    }
+  } else {
+    for (auto& value : list) element(value);
+  }
+}
+template <class Archive>
+void serialize(Archive& archive, RayTask& m) {
+  archive(m.ray, m.step, m.to);
+}
+
+template <class Archive>
+void serialize(Archive& archive, ShadowTask& m) {
+  // As a rule all start at the same place.
+  Vec3 origin = m.rays.empty() ? Vec3{} : m.rays[0].origin;
+  ShadowHead& head = m.head;
+  archive(head.shader, head.record, head.key, origin);
+  serializeSparse(archive, Usual{head.moment.time, 0.0}, Usual{head.moment.frame, 0}, Usual{head.sample, 0});
+  serializeEach(archive, m.rays, 34, [&](ShadowTravel& r) {
+    archive(r.slot, r.step, r.direction);
+    serializeSparse(archive, Usual{r.origin, origin}, Usual{r.distance, kInfinity}, Usual{r.through, kWhite},
+                    Usual{r.last, 0.0}, Usual{r.insideExtinct, 1.0}, Usual{r.inside, false});
+  });
+}
+
+template <class Archive>
+void serialize(Archive& archive, LightAnswers& m) {
+  archive(m.record);
+  serializeEach(archive, m.colors, 5, [&](LightAnswer& answer) {
+    archive(answer.slot);
+    serializeCompact(archive, answer.color);
+  });
+}
+
+template <class Archive>
+void serialize(Archive& archive, Expect& m) {
+  archive(m.record, m.to, m.hit, m.pending);
+  if constexpr (Archive::kReading) m.gathered.light.assign(m.hit.lit.size());
+  std::size_t pending = 0;
+  for (std::size_t point = 0; point < m.hit.lit.size(); ++point) {
+    if (m.hit.lit[point] != LightVisibility::traced) continue;
+    if (pending < m.pending.size() && m.pending[pending] == point) {
+      ++pending;
+    } else {
+      serializeCompact(archive, m.gathered.light[point]);
+    }
+  }
+  // Each pending point is one that was asked for, in order.
+  if constexpr (Archive::kReading)
+    if (pending != m.pending.size()) archive.fail();
+}
+
+template <class Archive>
+void serialize(Archive&, PyramidWanted&) {}
+
+// Samples are given row by row of small blocks: most are the right neighbour of the one before.
+template <class Archive>
+void serialize(Archive& archive, PrimaryRays& m) {
+  archive(m.firstRecord);
+  SampleId expected{0, 0, 0};
+  serializeEach(archive, m.samples, 1, [&](SampleId& sample) {
+    bool neighbour = false;
+    if constexpr (!Archive::kReading) neighbour = sample == expected;
+    archive(neighbour);
+    if (neighbour) {
+      sample = expected;
+    } else {
+      archive(sample);
+    }
+    expected = sample;
+    if (expected.x < std::numeric_limits<std::int32_t>::max()) ++expected.x;
+  });
+}
+
+// Where nothing is there is the background, over and over.
+template <class Archive>
+void serialize(Archive& archive, SampleColors& m) {
+  archive(m.first);
+  Color before = kBlack;
+  serializeEach(archive, m.colors, 1, [&](Color& color) {
+    bool again = false;
+    if constexpr (!Archive::kReading) again = sameBits(color, before);
+    archive(again);
+    if (again) {
+      color = before;
+    } else {
+      archive(color);
+    }
+    before = color;
+  });
+}
+
+template <class Archive>
+void serialize(Archive& archive, Answer& m) {
+  archive(m.record, m.slot);
+  serializeCompact(archive, m.color);
+}
+
+}  // namespace rayshade

@@ -1,0 +1,54 @@
+// One program with several names: the role of a task is the name under which it was started.
+//
+//   rayshade-host            from a shell or from the pvm console
+//   rayshade-voxel-trace     spawned by the host
+//   rayshade-pyramid-trace   spawned by the host
+//   rayshade-shade           spawned by the host
+//
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cstdio>
+#include <exception>
+#include <string_view>
+
+#include "pvm/link/pvm_link.h"
+#include "pvm/messages/event_loop.h"
+#include "pvm/program/host_program.h"
+#include "pvm/shade/shade_task.h"
+#include "pvm/trace/pyramid_task.h"
+#include "pvm/trace/voxel_task.h"
+
+namespace {
+
+using namespace rayshade;
+
+template <class Task>
+int runSlave() {
+  PvmLink link;
+  if (link.parent() == kNobody) {
+    std::fprintf(stderr, "this task is spawned by rayshade-host, not started by hand\n");
+    return 2;
+  }
+  link.watch(link.parent());  // nobody works for the dead
+  Task task(link);
+  runTask(task, link);
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::string_view name = argc > 0 ? argv[0] : "";
+  name = name.substr(name.find_last_of('/') + 1);
+  try {
+    if (name == programName(Role::host)) return runHostProgram(argc, argv);
+    if (name == programName(Role::voxelTrace)) return runSlave<VoxelTask>();
+    if (name == programName(Role::pyramidTrace)) return runSlave<PyramidTask>();
+    if (name == programName(Role::shade)) return runSlave<ShadeTask>();
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%.*s: %s\n", static_cast<int>(name.size()), name.data(), error.what());
+    return 1;
+  }
+  std::fprintf(stderr, "start this program as rayshade-host; it was called %.*s\n",
+               static_cast<int>(name.size()), name.data());
+  return 2;
+}

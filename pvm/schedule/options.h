@@ -1,0 +1,41 @@
+// What a parallel render is asked for: how many tasks, how space is divided, what travels, how long to wait.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <stdexcept>
+
+#include "pvm/messages/control.h"
+#include "pvm/schedule/process_mapping.h"
+
+namespace rayshade {
+
+// Into what voxels space is cut.
+enum class Split : std::uint8_t {
+  equal,  // of equal size (Reinhard & Jansen, section 3)
+  cost,   // of equal predicted work
+};
+
+struct HostOptions {
+  Wishes wishes;
+  std::uint32_t voxelsPerTask = 1;
+  Split split = Split::equal;
+  std::uint32_t window = 4096;      // samples on their way
+  std::uint32_t cells = 0;          // of the bin-tree, about; 0: by the size of the scene
+  std::uint32_t tileSamples = 256;  // of a pyramid, at most
+  DemandPolicy policy;
+  bool dynamicShading = false;  // shade tasks chosen by how busy they are
+  std::uint64_t seed = 0;
+  bool mixedArithmetic = false;  // go on when hosts compute different bits
+  int mostSuccessions = 100;     // deaths after which the render is given up
+  double pingAfter = 10;         // seconds of silence until a task is asked whether it lives
+  double killAfter = 30;         // seconds of silence, asked and no answer, until it counts as hanging
+  double patienceAtStart = 600;  // the same while tasks read their share of the model
+};
+
+// The render cannot go on: a program is missing, too many deaths, hosts that do not fit together.
+class HostError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+}  // namespace rayshade

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pvm/schedule/plan.h"
+
+#include <algorithm>
+#include <cinttypes>
+#include <cstdarg>
+
+namespace rayshade {
+namespace {
+
+[[gnu::format(printf, 2, 3)]] void add(std::string& text, const char* format, ...) {
+  va_list arguments;
+  va_start(arguments, format);
+  va_list again;
+  va_copy(again, arguments);
+  std::string piece(static_cast<std::size_t>(std::max(0, std::vsnprintf(nullptr, 0, format, arguments))),
+                    '\0');
+  std::vsnprintf(piece.data(), piece.size() + 1, format, again);
+  va_end(again);
+  va_end(arguments);
+  text += piece;
+}
+
+std::string describe(const Horizon& horizon) {
+  switch (horizon.kind) {
+    case Horizon::Kind::cells:
+      return horizon.value >= 1e9 ? "as far as the rays go"
+                                  : "for " + std::to_string(std::lround(horizon.value)) + " cells";
+    case Horizon::Kind::distance:
+      return "up to " + std::to_string(horizon.value) + " world units from the eye";
+    case Horizon::Kind::automatic:
+      break;
+  }
+  return "as long as fetching a cell pays";
+}
+
+// Who traces what, by the policy and by what the scene has.
+void addPolicy(std::string& text, const HostOptions& options, const SceneSettings& settings) {
+  const DemandPolicy& policy = options.policy;
+  if (options.wishes.pyramids == 0) {
+    add(text, "primary rays    travel from voxel to voxel: no pyramid tasks\n");
+  } else {
+    add(text, "primary rays    in pyramids of at most %u, with fetched cells %s\n", options.tileSamples,
+        describe(policy.horizon).c_str());
+  }
+  std::size_t areas = 0, casting = 0;
+  for (const LightSource& light : settings.lights) {
+    areas += pointsOf(light) > 1;
+    casting += light.castsShadows;
+  }
+  if (!settings.shadows || casting == 0) {
+    add(text, "shadow rays     none: no light casts shadows\n");
+  } else {
+    const char* how = policy.shadows == ShadowPolicy::forward ? "travel from voxel to voxel"
+                      : policy.shadows == ShadowPolicy::local
+                          ? "where the hit was found, with fetched cells"
+                          : "where the hit was found if fetching pays, else they travel";
+    add(text, "shadow rays     %s; to %zu lights, %zu of them areas\n", how, casting, areas);
+  }
+  add(text, "other rays      %s\n",
+      policy.secondariesTravel || options.wishes.pyramids == 0 ? "travel from voxel to voxel"
+                                                               : "in the pyramid task that found the hit");
+  add(text, "shading         %s\n",
+      policy.shadeAtOnce
+          ? "where all colours come from the task that found the hit, by that task; else by shade tasks"
+          : "by shade tasks");
+}
+
+}  // namespace
+
+std::vector<HostInfo> hostsAfterJoining(std::vector<HostInfo> running, const std::vector<HostLine>& lines,
+                                        const std::function<bool(const std::string&)>& isThisMachine,
+                                        const std::string& ownName) {
+  if (running.empty()) {
+    const auto own =
+        std::find_if(lines.begin(), lines.end(), [&](const HostLine& l) { return isThisMachine(l.name); });
+    running.push_back(own == lines.end() ? HostInfo{ownName} : HostInfo{own->name, speedOf(*own)});
+  }
+  for (const HostLine& line : lines) {
+    const bool known =
+        isThisMachine(line.name) ||
+        std::any_of(running.begin(), running.end(), [&](const HostInfo& h) { return h.name == line.name; });
+    if (!known) running.push_back({line.name, speedOf(line)});
+  }
+  return running;
+}
+
+std::string describePlan(const std::vector<HostInfo>& hosts, HostOptions options, Survey survey,
+                         const Sight& sight, const SceneWork& work) {
+  NeededTasks needed = neededTasks(work, options, hosts.size());
+  options.wishes = needed.wishes;
+  const std::vector<Placement> placements = mapProcesses(hosts, options.wishes);
+  const auto voxelTasks = static_cast<std::uint32_t>(std::count_if(
+      placements.begin(), placements.end(), [](const Placement& p) { return p.role == Role::voxelTrace; }));
+  const std::uint32_t clusters = std::max(1u, options.wishes.clusters), perCluster = voxelTasks / clusters;
+  const Division division = divideSpace(survey, sight, options, perCluster);
+  std::vector<std::uint64_t> objects(perCluster);  // by task of a cluster: whose centres lie in its voxels
+  std::vector<VoxelId> at;
+  for (const DensityGrid::Cube& cube : survey.density.cubes()) {
+    const Vec3 centre = Vec3{cube.x + 0.5, cube.y + 0.5, cube.z + 0.5} * survey.density.side();
+    at.clear();
+    voxelsTouching(division.tree, {centre, centre}, at);
+    objects[division.owners[number(at.back())]] += cube.count;
+  }
+
+  std::string text;
+  add(text, "%" PRIu64 " objects in %u voxels of equal %s and %u cells; %u cluster%s\n", survey.objects,
+      voxelCount(division.tree), options.split == Split::cost ? "predicted work" : "size",
+      cellCount(division.tree), clusters, clusters > 1 ? "s" : "");
+  addPolicy(text, options, sight.settings);
+
+  add(text, "\n%-21s %-16s %9s  %s\n", "task", "host", "objects", "why there");
+  add(text, "%-21s %-16s %9s  %s\n", "host 0", hosts[0].name.c_str(), "-", "where it is started");
+  for (const Placement& p : placements) {
+    const std::string name = std::string(programName(p.role)).substr(9) + " " + std::to_string(p.index);
+    const std::string held =
+        p.role == Role::voxelTrace ? "~" + std::to_string(objects[p.index % perCluster]) : "-";
+    add(text, "%-21s %-16s %9s  %s\n", name.c_str(), p.host.c_str(), held.c_str(), p.reason.c_str());
+  }
+  for (const std::string& less : needed.why) add(text, "%s\n", less.c_str());
+
+  // Work in parts of a voxel task's, for a machine of usual speed.
+  add(text, "\n%-21s %-16s %9s  %s\n", "host", "speed", "tasks", "expected work for its speed");
+  for (std::size_t i = 0; i < hosts.size(); ++i) {
+    double work = i == 0 ? expectedWork(Role::host) : 0;
+    int tasks = i == 0 ? 1 : 0;
+    for (const Placement& p : placements) {
+      if (p.host != hosts[i].name) continue;
+      work += expectedWork(p.role);
+      ++tasks;
+    }
+    add(text, "%-21s %-16d %9d  %.2f\n", hosts[i].name.c_str(), hosts[i].speed, tasks,
+        work * HostInfo{}.speed / std::max(hosts[i].speed, 1));
+  }
+  return text;
+}
+
+}  // namespace rayshade

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pvm/shade/shade_task.h"
+
+namespace rayshade {
+
+void ShadeTask::on(TaskId from, Configure message) {
+  context_.outbox.beginEpoch(message.epoch);
+  context_.epoch = message.epoch;
+  context_.reportLoad(from, message.loadEvery);
+  settings_ = std::move(message.settings);
+  ledger_.begin(lightPointCount(settings_), finderCount(message.directory));
+  context_.link.connect(message.directory.voxelTasks);
+  context_.link.connect(message.directory.shadeTasks);
+  context_.outbox.post(from, Ready{message.epoch, arithmeticFingerprint(), 0, 0, 0});
+}
+
+void ShadeTask::on(TaskId from, Finish) {
+  Report report = context_.report();
+  report.combined = combined_;
+  context_.outbox.post(from, report);
+  context_.finished = true;
+}
+
+void ShadeTask::on(TaskId from, Ping) {
+  context_.outbox.post(from, Pong{});
+  context_.outbox.flush();
+}
+
+void ShadeTask::on(TaskId, Expect&& message) { act(ledger_.expect(std::move(message))); }
+
+void ShadeTask::on(TaskId, const Answer& message) {
+  act(ledger_.arrive(message.record, message.slot, message.color));
+}
+
+void ShadeTask::on(TaskId, const LightAnswers& message) {
+  for (const LightAnswer& answer : message.colors)
+    act(ledger_.arrive(message.record, answer.slot, answer.color));
+}
+
+void ShadeTask::act(ShadeLedger::Verdict verdict) {
+  context_.notePeak(ledger_.open());
+  if (verdict == ShadeLedger::Verdict::refused) ++context_.outbox.traffic.refused;
+  if (verdict != ShadeLedger::Verdict::complete) return;
+  ++combined_;
+  const CompleteRecord& settled = ledger_.complete();
+  const Color color = combine(settled.hit, settled.gathered, settings_);
+  context_.outbox.post(settled.to.task, Answer{settled.to.record, settled.to.slot, color});
+}
+
+}  // namespace rayshade

@@ -1,0 +1,44 @@
+// The shade task (Reinhard & Jansen, figure 3, right).
+//
+// It is told of intersections, collects the colours of their secondary rays, and when the last has come it shades and
+// sends the colour to whoever spawned the ray.  It holds no object data.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "pvm/messages/task_context.h"
+#include "pvm/shade/shade_ledger.h"
+
+namespace rayshade {
+
+class ShadeTask {
+ public:
+  static constexpr double kHoldSeconds =
+      0.0002;  // nobody waits for one colour; measured: a third of the system time, no wall time
+  using Accepted = TypeList<Configure, Finish, Ping, Expect, Answer, LightAnswers>;
+
+  explicit ShadeTask(Link& link) : context_(link) {}
+
+  void receive(const LinkEvent& event) { receiveEvent(*this, context_, event); }
+  bool work(double) { return false; }  // all of it is done as messages come
+  void flush() { context_.flush(); }
+  bool finished() const { return context_.finished; }
+  void noteIdle(double seconds) { context_.idleSeconds += seconds; }
+
+  Epoch epoch() const { return context_.epoch; }
+  void on(TaskId from, Configure message);
+  void on(TaskId from, Finish);
+  void on(TaskId from, Ping);
+  void on(TaskId from, Expect&& message);
+  void on(TaskId from, const Answer& message);
+  void on(TaskId from, const LightAnswers& message);
+
+ private:
+  void act(ShadeLedger::Verdict verdict);
+
+  TaskContext context_;
+  SceneSettings settings_;
+  ShadeLedger ledger_;
+  std::uint64_t combined_ = 0;
+};
+
+}  // namespace rayshade

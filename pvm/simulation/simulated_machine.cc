@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pvm/simulation/simulated_machine.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "pvm/shade/shade_task.h"
+#include "pvm/trace/pyramid_task.h"
+#include "pvm/trace/voxel_task.h"
+
+namespace rayshade {
+namespace {
+
+// The life of a slave task, as far as the machine moves it.
+class Slave {
+ public:
+  virtual ~Slave() = default;
+  virtual void receive(const LinkEvent& event) = 0;
+  virtual bool work(double until) = 0;
+  virtual void flush() = 0;
+  virtual bool finished() const = 0;
+};
+
+template <class Task>
+class SlaveOf final : public Slave {
+ public:
+  explicit SlaveOf(Link& link) : task_(link) {}
+  void receive(const LinkEvent& event) override { task_.receive(event); }
+  bool work(double until) override { return task_.work(until); }
+  void flush() override { task_.flush(); }
+  bool finished() const override { return task_.finished(); }
+
+ private:
+  Task task_;
+};
+
+constexpr double kMoveSeconds = 1e-5;
+
+}  // namespace
+
+class SimulatedMachine::Inside final : public Link {
+ public:
+  Inside(SimulatedMachine& machine, TaskId self) : machine_(machine), self_(self) {}
+  TaskId self() const override { return self_; }
+  TaskId parent() const override { return kHost; }
+  void connect(std::span<const TaskId>) override {}
+  void send(TaskId to, std::span<const std::byte> packet) override { machine_.sendFrom(self_, to, packet); }
+  std::optional<LinkEvent> poll() override { return std::nullopt; }  // the machine delivers by itself
+  std::optional<LinkEvent> wait(double) override { return std::nullopt; }
+  void watch(TaskId task) override { machine_.watchers_[task].insert(self_); }
+  double now() const override { return machine_.time_ += 1e-7; }  // work takes time: it ends when asked to
+
+ private:
+  SimulatedMachine& machine_;
+  TaskId self_;
+};
+
+struct SimulatedMachine::Running {
+  Running(SimulatedMachine& machine, TaskId self, const std::string& hostName)
+      : link(machine, self), host(hostName) {}
+  Inside link;
+  std::string host;
+  std::unique_ptr<Slave> task;
+  bool hangs = false;
+  bool mayWork = false;
+};
+
+SimulatedMachine::SimulatedMachine(const Options& options)
+    : options_(options), state_(mixBits(options.seed)) {}
+SimulatedMachine::~SimulatedMachine() = default;
+
+std::uint64_t SimulatedMachine::random(std::uint64_t below) {
+  state_ = mixBits(state_);
+  return state_ % below;
+}
+
+Spawned SimulatedMachine::spawn(Role role, const std::string& host) {
+  const TaskId id{nextTask_++};
+  auto running = std::make_unique<Running>(*this, id, host);
+  switch (role) {
+    case Role::voxelTrace:
+      running->task = std::make_unique<SlaveOf<VoxelTask>>(running->link);
+      break;
+    case Role::pyramidTrace:
+      running->task = std::make_unique<SlaveOf<PyramidTask>>(running->link);
+      break;
+    case Role::shade:
+      running->task = std::make_unique<SlaveOf<ShadeTask>>(running->link);
+      break;
+    default:
+      return {kNobody, std::string("no such program: ") + programName(role)};
+  }
+  tasks_[id] = std::move(running);
+  return {id, ""};
+}
+
+void SimulatedMachine::sendFrom(TaskId from, TaskId to, std::span<const std::byte> packet) {
+  if (to != kHost && !tasks_.contains(to)) return;
+  enqueue({from, to}, {LinkEvent::Kind::packet, from, "", Bytes(packet.begin(), packet.end())});
+}
+
+void SimulatedMachine::enqueue(const Channel& channel, LinkEvent event) {
+  std::deque<LinkEvent>& queue = channels_[channel];
+  queue.push_back(std::move(event));
+  peakQueue_ = std::max(peakQueue_, ++queued_);
+  if (options_.largestQueue > 0 && queue.size() > options_.largestQueue)
+    throw std::runtime_error("simulated machine: a queue grows beyond its bound");
+}
+
+void SimulatedMachine::kill(TaskId task) { bury(task, random(2) == 0); }
+
+void SimulatedMachine::bury(TaskId task, bool losesWords) {
+  if (tasks_.erase(task) == 0) return;
+  for (auto it = channels_.begin(); it != channels_.end();) {
+    auto& [channel, queue] = *it;
+    std::size_t keep = queue.size();
+    if (channel.to == task) keep = 0;
+    if (channel.from == task && losesWords) keep = random(queue.size() + 1);
+    queued_ -= queue.size() - keep;
+    queue.resize(keep);
+    it = queue.empty() ? channels_.erase(it) : std::next(it);
+  }
+  // The notice comes after the last words that still arrive.
+  for (TaskId watcher : watchers_[task]) enqueue({task, watcher}, {LinkEvent::Kind::taskExit, task, "", {}});
+  watchers_.erase(task);
+}
+
+// Kills a task, or makes one hang, when the time has come.
+void SimulatedMachine::injectFault() {
+  if (deaths_ >= options_.mostDeaths || tasks_.empty()) return;
+  const bool death = options_.movesPerDeath > 0 && random(options_.movesPerDeath) == 0;
+  const bool hang = options_.movesPerHang > 0 && random(options_.movesPerHang) == 0;
+  if (!death && !hang) return;
+  ++deaths_;
+  const auto victim = std::next(tasks_.begin(), static_cast<long>(random(tasks_.size())));
+  if (hang) {
+    victim->second->hangs = true;
+  } else {
+    bury(victim->first, true);
+  }
+}
+
+std::optional<LinkEvent> SimulatedMachine::deliver(const Channel& channel) {
+  if (beforeDelivery) {
+    const LinkEvent& next = channels_[channel].front();
+    beforeDelivery(channel.from, channel.to, next.bytes);
+    if (channels_.find(channel) == channels_.end() || channels_[channel].empty()) return std::nullopt;
+  }
+  std::deque<LinkEvent>& queue = channels_[channel];
+  LinkEvent event = std::move(queue.front());
+  queue.pop_front();
+  --queued_;
+  if (queue.empty()) channels_.erase(channel);
+  if (channel.to == kHost) return event;
+  const auto to = tasks_.find(channel.to);
+  if (to == tasks_.end()) return std::nullopt;
+  to->second->task->receive(event);
+  to->second->mayWork = true;
+  if (to->second->task->finished()) {
+    to->second->task->flush();
+    bury(channel.to, false);
+  }
+  return std::nullopt;
+}
+
+// One move.  False: nothing can move.
+bool SimulatedMachine::move(std::optional<LinkEvent>& forHost) {
+  ++moves_;
+  time_ += kMoveSeconds;
+  injectFault();
+  std::vector<Channel> open;
+  for (const auto& [channel, queue] : channels_) {
+    const auto to = tasks_.find(channel.to);
+    if (channel.to == kHost || (to != tasks_.end() && !to->second->hangs)) open.push_back(channel);
+  }
+  std::vector<Running*> busy;
+  for (const auto& [id, running] : tasks_)
+    if (running->mayWork && !running->hangs) busy.push_back(running.get());
+  if (open.empty() && busy.empty()) return false;
+  const std::uint64_t choice = random(open.size() + busy.size());
+  if (choice < open.size()) {
+    forHost = deliver(open[choice]);
+  } else {
+    Running& running = *busy[choice - open.size()];
+    running.mayWork = running.task->work(time_ + 1e-7 * static_cast<double>(random(20)));
+    if (!running.mayWork || random(4) == 0) running.task->flush();
+  }
+  return true;
+}
+
+std::optional<LinkEvent> SimulatedMachine::poll() {
+  for (const auto& [channel, queue] : channels_)
+    if (channel.to == kHost && random(2) == 0) return deliver(Channel(channel));
+  return std::nullopt;
+}
+
+std::optional<LinkEvent> SimulatedMachine::wait(double seconds) {
+  std::optional<LinkEvent> event;
+  const double deadline = time_ + seconds;
+  while (time_ < deadline) {
+    if (!move(event)) {
+      // Nothing moves by itself: the host's patience ends.
+      if (++idleWaits_ > 10000) throw std::runtime_error("simulated machine: nothing moves any more");
+      time_ = deadline;
+      return std::nullopt;
+    }
+    if (event) {
+      idleWaits_ = 0;
+      return event;
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace rayshade

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rayshade/intersect/ray_hit.h"
+
+#include "rayshade/intersect/csg.h"
+
+namespace rayshade {
+namespace {
+
+template <class S>
+double intersectShape(const S& shape, const LocalRay& ray, double tMin) {
+  if (ray.scale == 1) return shape.intersect(ray, tMin);
+  // What counts is t > tMin in world units: two roots may round to one there, and one root to two.
+  const double from = tMin * ray.scale;
+  double local = shape.intersect(ray, from - std::abs(from) * 0x1p-50);
+  while (local < kNoHit && local / ray.scale <= tMin) local = shape.intersect(ray, local);
+  return local / ray.scale;
+}
+
+// Does the type at a position of AllShapes have one of these keywords?
+constexpr bool keywordIs(BodyKind kind, std::initializer_list<std::string_view> words) {
+  bool found = false;
+  std::size_t position = 0;
+  AllShapes::forEach([&]<class S>() {
+    if (position++ != static_cast<std::size_t>(kind)) return;
+    for (std::string_view word : words) found = found || S::keyword == word;
+  });
+  return found;
+}
+
+}  // namespace
+
+bool isFlat(BodyKind kind) { return keywordIs(kind, {"disc", "polygon", "triangle", "triangleuv"}); }
+bool isUnbounded(BodyKind kind) { return keywordIs(kind, {"plane"}); }
+
+const LocalRay& RayIntersector::rayIn(NodeIndex node) {
+  if (node != lastNode_) {
+    lastRay_ = intoNode(model_.store(), node, ray_, moment_);
+    lastNode_ = node;
+  }
+  return lastRay_;
+}
+
+double RayIntersector::intersectAny(const Target& target, double tMin, double tMax) {
+  const LocalRay& local = target.node == 0 ? ray_ : rayIn(target.node);
+  const SceneStore& store = model_.store();
+  if (target.kind == kInstanceKind) {
+    return nearestHit(model_, model_.definition(store.instance(target.body)), local, moment_, tMin,
+                      tMax < kNoHit ? std::nextafter(tMax, kInfinity) : kNoHit)
+        .t;
+  }
+  if (target.kind == kCsgKind) return csgCrossing(model_, store.csg(target.body), local, moment_, tMin).t;
+  double t = kNoHit;
+  [&]<class... S>(TypeList<S...>) {
+    (void)((target.kind == kKindOf<S>
+                ? (t = intersectShape(store.shapes<S>()[target.body], local, tMin), true)
+                : false) ||
+           ...);
+  }(AllShapes{});
+  return t;
+}
+
+Hit nearestHit(const Model& model, const Region& region, const LocalRay& ray, const Moment& moment,
+               double tMin, double tExit) {
+  RayIntersector probe(model, ray, moment);
+  Hit best;
+  double limit = tExit * ray.scale;  // in the units of the region, for the accelerator
+  region.bvh.nearest(ray.origin, ray.direction, tMin * ray.scale, limit,
+                     [&](std::uint32_t first, std::uint32_t count) {
+                       best.tests += count;
+                       for (const Target& target : std::span(region.objects).subspan(first, count)) {
+                         const double t = probe.intersect(target, tMin, std::min(best.t, tExit));
+                         if (!(t < tExit) || t > best.t) continue;
+                         if (t == best.t && precedence(model.store().object(target.object)) >=
+                                                precedence(model.store().object(best.object)))
+                           continue;
+                         best.t = t;
+                         best.object = target.object;
+                         limit = t * ray.scale;
+                       }
+                     });
+  return best;
+}
+
+}  // namespace rayshade

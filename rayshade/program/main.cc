@@ -1,0 +1,129 @@
+// The program `rayshade`: one process, no PVM.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <sys/resource.h>
+
+#include <cinttypes>
+
+#include "rayshade/base/interruption.h"
+#include "rayshade/program/options.h"
+#include "rayshade/program/output_file.h"
+#include "rayshade/program/progress.h"
+#include "rayshade/program/scene_plan.h"
+#include "rayshade/trace/render.h"
+
+namespace {
+
+using namespace rayshade;
+
+struct Times {
+  double read = 0, build = 0, trace = 0;
+};
+
+double megabytes(std::size_t bytes) { return 1e-6 * static_cast<double>(bytes); }
+
+void writeReport(std::FILE* to, const Scene& scene, const FrameResult& result, const Times& times,
+                 std::uint64_t pictureSum) {
+  const TraceCounts& c = result.counts;
+  const std::uint64_t all = c.primaryRays + c.transmittedRays + c.reflectedRays + c.shadowRays;
+  auto line = [to](const char* what, std::uint64_t n) { std::fprintf(to, "%-24s %12" PRIu64 "\n", what, n); };
+  line("eye rays", c.primaryRays);
+  line("shadow rays", c.shadowRays);
+  line("transmitted rays", c.transmittedRays);
+  line("reflected rays", c.reflectedRays);
+  line("all rays", all);
+  line("hits", c.hits);
+  line("supersampled pixels", result.samples.supersampled);
+  std::fprintf(to, "%-24s %12.2f\n", "object tests per ray",
+               static_cast<double>(c.tests) / static_cast<double>(std::max<std::uint64_t>(all, 1)));
+  line("objects", scene.model.store().objectCount());
+  std::fprintf(to, "%-24s %12.2f M\n", "rays per second",
+               1e-6 * static_cast<double>(all) / std::max(times.trace, 1e-9));
+  std::fprintf(to, "%-24s %8.3f read, %.3f build, %.3f trace\n", "seconds", times.read, times.build,
+               times.trace);
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  std::fprintf(to, "%-24s %8.1f scene, %.1f process at most\n", "megabytes", megabytes(scene.bytes()),
+               1e-3 * static_cast<double>(usage.ru_maxrss));
+  std::fprintf(to, "%-24s %016" PRIx64 "\n", "picture checksum", pictureSum);
+}
+
+int printPlan(const Options& options) {
+  FeatureSink sink;
+  SceneHead head = parseScene(options.parse, sink);
+  applyOptions(options, head);
+  std::fputs(describe(scenePlan(sink.features(), head)).c_str(), stdout);
+  return 0;
+}
+
+int run(const Options& options) {
+  Times times;
+  double mark = secondsNow();
+  auto lap = [&mark] {
+    const double now = secondsNow(), spent = now - mark;
+    mark = now;
+    return spent;
+  };
+
+  Scene scene;
+  SceneHead head = parseScene(options.parse, scene.model.store());
+  applyOptions(options, head);
+  if (scene.model.store().objectCount() == 0)
+    throw SceneError(sceneName(options) + ": error: there is nothing to be rendered");
+  scene.settings = head.settings;
+  const View view = *viewOf(head.camera, head.picture);
+  const PixelArea area = *pixelArea(head.picture);
+  const std::string outputFile = chooseOutput(options, head);
+  times.read = lap();
+  const bool quiet = options.quiet || head.report.quiet;
+  const bool report = reportWanted(options, head);
+  OutputFile reportTo(reportFile(options, head));
+  const std::int32_t everyRows = rowsBetweenLines(options, head);
+  const std::int32_t first = head.picture.firstFrame;
+  for (std::int32_t frame = first; frame < first + head.picture.frames; ++frame) {
+    std::optional<PictureFormat> format = options.format;
+    const std::string file = frameFile(outputFile, frame, head.picture.frames);
+    if (options.sixteenBit && formatOf(file) == PictureFormat::png) format = PictureFormat::png16;
+    PictureWriter writer(file, area.width, area.height, head.picture.gamma, format);
+    mark = secondsNow();
+    scene.prepare(exposureOf(head.picture, frame));
+    times.build = lap();
+    ProgressLine progress(!quiet);
+    Picture sum{area.width, area.height, {}};
+    std::int32_t rows = 0;
+    const FrameResult result =
+        renderFrame(scene, view, head.picture, frame, options.seed, [&](const std::vector<Color>& row) {
+          checkInterruption();
+          writer.row(row);
+          if (report) appendRow(sum, row);
+          ++rows;
+          if (everyRows > 0 && rows % everyRows == 0) sayLine(rows, area.height, area.width);
+          progress.show(rows, area.height,
+                        static_cast<std::uint64_t>(rows) * static_cast<std::uint64_t>(area.width), "pixels");
+        });
+    writer.finish();
+    times.trace = lap();
+    progress.clear();
+    if (report) writeReport(reportTo ? reportTo.file() : stderr, scene, result, times, checksum(sum));
+  }
+  reportTo.close();
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  bool plan = false;
+  if (const std::optional<int> status = readCommandLine(argc, argv, options, plan)) return *status;
+  listenForInterruption();
+  options.parse.warn = [&options](const std::string& message) {
+    if (!options.quiet) std::fprintf(stderr, "%s\n", message.c_str());
+  };
+  options.parse.print = [](const std::string& message) { std::fprintf(stderr, "%s\n", message.c_str()); };
+  try {
+    return plan ? printPlan(options) : run(options);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
+}

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rayshade/space/bounds_sample.h"
+
+#include <algorithm>
+
+#include "rayshade/base/random.h"
+
+namespace rayshade {
+namespace {
+
+double surfaceArea(const Bounds& b) {
+  const Vec3 s = b.size();
+  return 2 * (s.x * s.y + s.y * s.z + s.z * s.x);
+}
+
+}  // namespace
+
+void BoundsSample::add(const Bounds& bounds) {
+  const std::uint64_t number = count_++;
+  const double area = bounds.empty() || !bounds.finite() ? 0 : surfaceArea(bounds);
+  if (!(area > 0 && area < kInfinity)) return;
+  const double u = static_cast<double>((mixBits(number) >> 11) + 1) * 0x1p-53;
+  const auto higher = [](const Kept& a, const Kept& b) {
+    return a.priority != b.priority ? a.priority > b.priority : a.number < b.number;
+  };
+  const Kept candidate{area / u, number, bounds};
+  if (kept_.size() == most_) {
+    if (!higher(candidate, kept_.front())) {
+      threshold_ = std::max(threshold_, candidate.priority);
+      return;
+    }
+    std::pop_heap(kept_.begin(), kept_.end(), higher);
+    threshold_ = std::max(threshold_, kept_.back().priority);
+    kept_.pop_back();
+  }
+  kept_.push_back(candidate);
+  std::push_heap(kept_.begin(), kept_.end(), higher);
+}
+
+std::vector<BoundsSample::Box> BoundsSample::boxes() const {
+  std::vector<Kept> inOrder = kept_;
+  std::sort(inOrder.begin(), inOrder.end(), [](const Kept& a, const Kept& b) { return a.number < b.number; });
+  std::vector<Box> boxes;
+  for (const Kept& k : inOrder)
+    boxes.push_back({k.bounds, std::max(1.0, threshold_ / surfaceArea(k.bounds))});
+  return boxes;
+}
+
+}  // namespace rayshade

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pvm/trace/local_hits.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/compare_pictures.h"
+#include "tests/support/render_text.h"
+
+namespace rayshade {
+namespace {
+
+ReturnPath mirror() {
+  ReturnPath back;
+  back.reflected = true;
+  return back;
+}
+
+TEST(LocalHits, APlaceIsUsedAgainWhenTheLastRayIsGone) {
+  LocalHits hits;
+  ReturnPath glass = mirror();
+  glass.transmitted = true;
+  const std::uint64_t first = hits.add(kWhite, glass, {TaskId{1}, 2, 3});
+  const std::uint64_t second = hits.add(kWhite, mirror(), {TaskId{1}, first, kReflectedSlot});
+  EXPECT_NE(first, second);
+  EXPECT_EQ(hits[first].rays, 2);
+  EXPECT_EQ(hits[second].rays, 1);
+  hits.forgetRay(first);
+  EXPECT_EQ(hits.size(), 2u);
+  hits.forgetRay(first);
+  EXPECT_EQ(hits.size(), 1u);
+  hits[second].reflected = kBlack;
+  EXPECT_EQ(hits.add(kBlack, mirror(), {}), first);
+  EXPECT_EQ(hits[first].sum, kBlack);
+  EXPECT_FALSE(hits[first].reflected);
+  hits.clear();
+  EXPECT_EQ(hits.size(), 0u);
+}
+
+// Mirrors between mirrors, and glass, cut in two: some hits stay, others go over to the shade task, and some of those when
+// one of their colours has come already.
+const std::string kHall =
+    "screen 48 36 sample 1 nojitter eyep 0 -9 1 maxdepth 7 light 1 point 3 -9 9 light .4 directional -1 -1 1 "
+    "surface mirror diffuse .2 .2 .2 specular 1 1 1 reflect .7 "
+    "surface glass diffuse 0 0 0 specular 1 1 1 reflect .3 transp .8 body 1 1 1 index 1.3 "
+    "plane mirror 0 0 -1  0 0 1 sphere mirror 1 -2 0 0 sphere glass 1 0 -1 0 sphere mirror 1 2 0 0 "
+    "sphere glass .6 1 -2 .5 sphere mirror .5 -1 -2 0 box mirror -1 2 -1  1 3 2 ";
+
+TEST(LocalHits, AHitIsShadedOnceByWhoeverHasItsLastColour) {
+  const Job job = jobOfText(kHall);
+  const auto alone = renderSequentially(job);
+  for (const std::uint32_t voxels : {1u, 2u, 3u, 6u}) {
+    for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+      HostOptions options;
+      options.wishes.voxels = voxels;
+      options.wishes.shades = 2;
+      options.policy.shadeAtOnce = true;
+      const RenderedByTasks got = renderByTasks(job, options, {.seed = seed});
+      EXPECT_EQ(difference(got.frames, alone.frames), "");
+      std::uint64_t near = 0, far = 0, hits = 0;
+      for (const TaskSummary& task : got.summary.tasks) {
+        const Report& report = task.report;
+        (task.placement.role == Role::shade ? far : near) += report.combined;
+        hits += report.counts.hits;
+        EXPECT_EQ(report.refused, 0u);
+      }
+      EXPECT_GT(near, 0u);
+      EXPECT_EQ(far > 0, voxels > 1);
+      EXPECT_EQ(near + far, hits);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace rayshade
