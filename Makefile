@@ -49,7 +49,7 @@ pvm_tests := $(call objects,tests/parallel/pvm_test.cc tests/parallel/pvm_suite_
 link_test := $(call objects,tests/parallel/link_test.cc)
 tests := $(filter-out $(pvm_tests) $(link_test),$(call objects,$(call find_sources,tests/unit tests/property tests/golden tests/parallel tests/fault tests/support) $(wildcard tests/fuzz/any_*.cc)))
 # What sanitizers are most likely to find fault with: whoever reads bytes of others or juggles tasks.
-guarded_tests := $(call objects,$(foreach name,archive expression fuzz_corpus image_file in_flight local_trace messages object_cache object_stream outbox parser shade_ledger spool tokens wire_format,tests/unit/$(name)_test.cc) \
+guarded_tests := $(call objects,$(foreach name,archive expression fuzz_corpus image_file in_flight messages object_cache object_stream outbox parser shade_ledger spool tokens wire_format,tests/unit/$(name)_test.cc) \
   tests/fault/fault_test.cc tests/parallel/equivalence_test.cc tests/parallel/schedules_test.cc \
   $(filter-out tests/support/oracle.cc,$(call find_sources,tests/support)) $(wildcard tests/fuzz/any_*.cc))
 fuzzers := $(patsubst tests/fuzz/%.cc,$(BIN)/%,$(wildcard tests/fuzz/*_fuzz.cc))

@@ -7,7 +7,8 @@
 #include "pvm/messages/addresses.h"
 #include "pvm/messages/cells.h"
 #include "rayshade/scene/camera.h"
-#include "rayshade/trace/trace.h"
+#include "rayshade/scene/store.h"
+#include "rayshade/trace/trace_counts.h"
 
 namespace rayshade {
 

@@ -5,6 +5,7 @@
 #include "pvm/messages/addresses.h"
 #include "rayshade/sampling/sampler.h"
 #include "rayshade/shading/combine.h"
+#include "rayshade/shading/shadow.h"
 
 namespace rayshade {
 
@@ -143,10 +144,10 @@ void serialize(Archive& archive, LightAnswers& m) {
 template <class Archive>
 void serialize(Archive& archive, Expect& m) {
   archive(m.record, m.to, m.hit, m.pending);
-  if constexpr (Archive::kReading) m.gathered.light.assign(m.hit.lit.size());
+  if constexpr (Archive::kReading) m.gathered.light.assign(m.hit.visibility.size());
   std::size_t pending = 0;
-  for (std::size_t point = 0; point < m.hit.lit.size(); ++point) {
-    if (m.hit.lit[point] != LightVisibility::traced) continue;
+  for (std::size_t point = 0; point < m.hit.visibility.size(); ++point) {
+    if (m.hit.visibility[point] != LightVisibility::traced) continue;
     if (pending < m.pending.size() && m.pending[pending] == point) {
       ++pending;
     } else {
