@@ -8,7 +8,7 @@
 
 namespace rayshade {
 
-// Follow this ray from position `step` of its walk.
+// To a voxel-trace task: follow this ray from position `step` of its walk.
 struct RayTask {
   static constexpr bool isFact = false;
   Ray ray;
@@ -35,7 +35,7 @@ struct ShadowHead {
   std::int32_t sample = 0;
   RandomKey key{};
 };
-// Follow these shadow rays of one intersection.
+// To a voxel-trace task: follow these shadow rays of one intersection.
 struct ShadowTask {
   static constexpr bool isFact = false;
   ShadowHead head;
@@ -49,6 +49,7 @@ struct LightAnswer {
   Slot slot = 0;
   Color color;
 };
+// To a shade task: light that arrives at one intersection, or that does not.
 struct LightAnswers {
   static constexpr bool isFact = false;
   RecordId record = 0;
@@ -66,7 +67,7 @@ struct Expect {
   InlineVector<Slot, 8> pending;  // light points whose colour will come in LightAnswers, ascending
 };
 
-// From a pyramid task: it could do with a pyramid.
+// From a pyramid-trace task to the host: it has room for a pyramid.
 struct PyramidWanted {
   static constexpr bool isFact = false;
 };
@@ -82,7 +83,7 @@ struct PrimaryRays {
 // Are there any, and are they samples of this picture?
 bool samplesFit(const PrimaryRays& message, const PictureSpec& picture);
 
-// A colour comes home.
+// To a shade task or the host: the colour of a ray comes home.
 struct Answer {
   static constexpr bool isFact = false;
   RecordId record = 0;
@@ -90,7 +91,7 @@ struct Answer {
   Color color;
 };
 
-// The same for samples, to the host: the colour of record first + i for each i.
+// To the host: the colours of samples, of record first + i for each i.
 struct SampleColors {
   static constexpr bool isFact = false;
   RecordId first = 0;
