@@ -162,12 +162,8 @@ def short_tables(out, found):
     most = max(values(rows, "processors"))
     at = pick(rows, processors=most)
     print(f"## The schemes on {most:.0f} processors\n", file=out)
-    for row in at:  # the sequential program is the measure of all CPU time
-        row["cpuOverSequential"] = row["cpu"] / row["cpuSequential"]
-    pivot(out, "CPU time of all tasks over that of the sequential program", at, "cpuOverSequential", "scene", "schedule")
     pivot(out, "Load: busiest processor over the mean, as run", at, "balance", "scene", "schedule")
     pivot(out, "Bytes of a processor, in and out, mean", at, "bytesMean", "scene", "schedule")
-    pivot(out, "Objects, accelerators and caches of the fullest processor, bytes", at, "modelMax", "scene", "schedule")
 
 
 def write(file, found):
