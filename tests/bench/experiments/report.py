@@ -132,8 +132,7 @@ def claim_of_cache(out, rows):
 
     claim(out, "The cache for light pyramids saves nine fetches of ten, as small as it may be",
           [a["noFetchRatio"] > 0.9 for _, a, _ in ends],
-          "Look-ups without a fetch, smallest cache → one as large as the model: " + ratios("noFetchRatio") +
-          ". Of these the cell was there, not just on its way: " + ratios("hitRatio") + ".")
+          "Look-ups without a fetch, smallest cache → one as large as the model: " + ratios("noFetchRatio") + ".")
 
 
 def claim_of_clusters(out, rows):
