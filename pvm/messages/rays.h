@@ -72,8 +72,9 @@ struct PyramidWanted {
   static constexpr bool isFact = false;
 };
 
-// Follow the primary rays of these samples: to a pyramid task, the samples of a tile, which make one pyramid; to a
-// voxel-trace task, samples whose rays as a rule begin in its voxels.  Sample i is record firstRecord + i of the host.
+// Host to a tracing task: follow the primary rays of these samples.  To a pyramid-trace task, the samples of a tile, which
+// make one pyramid; to a voxel-trace task, samples whose rays as a rule begin in its voxels.  Sample i is record
+// firstRecord + i of the host.
 struct PrimaryRays {
   static constexpr bool isFact = false;
   RecordId firstRecord = 0;
