@@ -107,6 +107,7 @@ TEST(Documents, CanBeReadInAnAfternoon) {
     for (std::string word; text >> word;) ++words;
   }
   EXPECT_LT(words, 21000u);
+  EXPECT_LE(countLines(readText("README.md")), 90u) << "README.md is more than two pages";
 }
 
 }  // namespace
