@@ -6,11 +6,12 @@
 #   make install PREFIX=/usr/local        programs into PREFIX/bin, and where `pvm` looks by convention
 #   make check-sanitized   the tests of what reads bytes of others or juggles tasks, under clang's sanitizers for
 #                     addresses and undefined behaviour; all tests: make SAN=address,undefined check
+#   make docs         the generated parts of the documents (docs/generate); `make check` finds what is out of date
 #   make fuzz         the fuzzers, FUZZ_SECONDS each, in the same build tree
 #   make bench        docs/speed-and-error.md: measures error against time (a few minutes)
 #   make benches      the other measuring programs into bin/bench/
 #   make bench-embree bin/bench/embree_rate: rays per second beside Embree (Debian: libembree-dev)
-#   make experiments  the schemes of the paper measured over PVM, into docs/experiments/ (20 minutes);
+#   make experiments  the schemes of the paper measured over PVM, into docs/experiments/ (7 minutes);
 #                     QUICK=1: small pictures, into BUILD/experiments (2 minutes)
 #
 # Sources find themselves: a new file needs no edit here.  Every program is linked from one library of the same
@@ -61,7 +62,7 @@ roles := host voxel-trace pyramid-trace shade
 programs := $(BIN)/rayshade $(BIN)/rayshade-error $(BIN)/spd $(roles:%=$(BIN)/rayshade-%)
 test_programs := $(BIN)/rayshade-tests $(BIN)/link-tests $(BIN)/pvm-tests
 
-.PHONY: all demo check check-sanitized test guarded install fuzz fuzzers bench benches bench-embree experiments format clean packages
+.PHONY: all demo docs check check-sanitized test guarded install fuzz fuzzers bench benches bench-embree experiments format clean packages
 all: $(programs)
 
 # What runs for long is worth a tenth more.  -Wno-restrict: g++ 12 then sees overlaps in std::string that are not there (its
@@ -136,6 +137,9 @@ bench: $(BIN)/rayshade $(BIN)/rayshade-error $(BIN)/spd
 
 experiments: all
 	@PYTHONDONTWRITEBYTECODE=1 tests/bench/experiments/run $(BIN) $(if $(QUICK),$(BUILD)/experiments --quick,docs/experiments)
+
+docs: all
+	@docs/generate --bin $(BIN)
 
 fuzz:
 	@$(MAKE) --no-print-directory -j2 $(sanitized) fuzzers
