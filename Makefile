@@ -42,7 +42,7 @@ find_sources = $(sort $(shell find $(1) -name '*.cc'))
 
 core := $(call objects,$(filter-out rayshade/program/main.cc rayshade/program/error_main.cc,$(call find_sources,rayshade)))
 spd := $(call objects,$(filter-out scenes/spd/main.cc,$(call find_sources,scenes/spd)))
-pvm_door := $(call objects,pvm/link/pvm_link.cc pvm/link/virtual_machine.cc)
+pvm_door := $(call objects,$(filter-out pvm/link/host_file.cc,$(call find_sources,pvm/link)))
 pvm_programs := $(call objects,pvm/program/main.cc pvm/program/host_program.cc)
 tasks := $(filter-out $(pvm_door) $(pvm_programs),$(call objects,$(call find_sources,pvm)))
 # Tests that need no PVM daemon make one program, those that do another one.

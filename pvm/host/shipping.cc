@@ -3,20 +3,55 @@
 
 #include <algorithm>
 
+#include "rayshade/space/voxel_bounds.h"
+
 namespace rayshade {
 namespace {
 
 std::size_t sizeOf(const Item& item) { return encode(item).size(); }
 
+void noteCells(const SceneObject& object, const Bounds& bounds, Configure& configuration) {
+  std::vector<CellId> cells;
+  cellsTouching(configuration.tree, bounds, cells);
+  const auto bytes = static_cast<std::uint32_t>(encode(object).size());
+  for (CellId cell : cells) {
+    const auto at = static_cast<std::size_t>(cell);
+    configuration.cellBytes[at] += bytes;
+    Bounds& box = configuration.cellBounds[at];
+    box = join(box, boundsInCell(bounds, configuration.tree, cell));
+  }
+}
+
+// The voxel tasks that get an object, by number over all clusters; no task twice.
+std::vector<std::uint32_t> tasksTouching(const Bounds& bounds, const Configure& configuration,
+                                         const std::set<std::uint32_t>& targets) {
+  const Directory& directory = configuration.directory;
+  std::vector<VoxelId> voxels;
+  voxelsTouching(configuration.tree, bounds, voxels);
+  std::vector<std::uint32_t> tasks;
+  for (VoxelId voxel : voxels) {
+    for (std::uint32_t cluster = 0; cluster < directory.clusters; ++cluster) {
+      const std::uint32_t task =
+          cluster * directory.tasksPerCluster() + directory.voxels[static_cast<std::size_t>(voxel)];
+      if (targets.contains(task) && std::find(tasks.begin(), tasks.end(), task) == tasks.end())
+        tasks.push_back(task);
+    }
+  }
+  return tasks;
+}
+
 }  // namespace
 
-Shipping::Shipping(ObjectStream& stream, const BinTree& tree, const Directory& directory,
-                   std::set<std::uint32_t> targets, Send send)
-    : stream_(stream),
-      tree_(tree),
-      directory_(directory),
+Shipping::Shipping(Configure& configuration, std::set<std::uint32_t> targets, Send send)
+    : configuration_(configuration),
       targets_(std::move(targets)),
-      send_(std::move(send)) {}
+      send_(std::move(send)),
+      stream_(configuration.exposure,
+              [this](const SceneObject& object, const Bounds& bounds,
+                     std::span<const NodeItem* const> nodes) { ship(object, bounds, nodes); }) {
+  configuration.cellBytes.assign(cellCount(configuration.tree), 0);
+  configuration.cellBounds.assign(cellCount(configuration.tree), Bounds{});
+}
 
 void Shipping::add(std::uint32_t task, Item item) {
   Parcel& parcel = parcels_[task];
@@ -35,7 +70,7 @@ void Shipping::addSurface(std::uint32_t task, SurfaceId id) {
   if (const auto surface = stream_.findSurface(id)) add(task, SurfaceItem{id, *surface});
 }
 
-void Shipping::addFrame(std::uint32_t task, const NodeItem& node) {
+void Shipping::addNode(std::uint32_t task, const NodeItem& node) {
   // Sending a node again does no harm; remembering every node of a large scene would.
   std::set<std::uint32_t>& sent = parcels_[task].nodes;
   if (sent.size() >= kRemembered) sent.clear();
@@ -52,7 +87,7 @@ void Shipping::addNeeds(std::uint32_t task, const SceneObject& object) {
   if (const Csg* csg = std::get_if<Csg>(&object.body)) definition = csg->operands;
   if (definition == kWorld || !parcels_[task].definitions.insert(number(definition)).second) return;
   stream_.readDefinition(definition, [&](const Item& item) {
-    if (const NodeItem* node = std::get_if<NodeItem>(&item)) addFrame(task, *node);
+    if (const NodeItem* node = std::get_if<NodeItem>(&item)) addNode(task, *node);
     if (const SceneObject* inside = std::get_if<SceneObject>(&item)) {
       addNeeds(task, *inside);
       add(task, *inside);
@@ -60,24 +95,12 @@ void Shipping::addNeeds(std::uint32_t task, const SceneObject& object) {
   });
 }
 
-void Shipping::object(const SceneObject& object, const Bounds& bounds,
-                      std::span<const NodeItem* const> nodes) {
-  touched_.clear();
-  voxelsTouching(tree_, bounds, touched_);
-  std::vector<std::uint32_t> tasks;
-  for (VoxelId voxel : touched_) {
-    for (std::uint32_t cluster = 0; cluster < directory_.clusters; ++cluster) {
-      const std::uint32_t task =
-          cluster * directory_.tasksPerCluster() + directory_.voxels[static_cast<std::size_t>(voxel)];
-      if (targets_.contains(task) && std::find(tasks.begin(), tasks.end(), task) == tasks.end())
-        tasks.push_back(task);
-    }
-  }
-  for (std::uint32_t task : tasks) {
-    for (const NodeItem* node : nodes) addFrame(task, *node);
+void Shipping::ship(const SceneObject& object, const Bounds& bounds, std::span<const NodeItem* const> nodes) {
+  noteCells(object, bounds, configuration_);
+  for (std::uint32_t task : tasksTouching(bounds, configuration_, targets_)) {
+    for (const NodeItem* node : nodes) addNode(task, *node);
     addNeeds(task, object);
     add(task, object);
-    ++shipped_;
   }
 }
 

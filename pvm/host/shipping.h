@@ -20,21 +20,15 @@ class Shipping {
   static constexpr int kBatches = 4;
   static constexpr std::size_t kRemembered = 4096;  // surfaces, and nodes, that a task is known to have
 
-  // Sends to the task with a number; `waitForCredit` returns when that task has answered a batch (or must give up: then
-  // it throws).
+  // Sends to the task with a number; returns when another batch may follow (or must give up: then it throws).
   using Send = std::function<void(std::uint32_t task, Items&& batch)>;
 
-  // `targets`: which of the directory's voxel tasks are shipped to.
-  Shipping(ObjectStream& stream, const BinTree& tree, const Directory& directory,
-           std::set<std::uint32_t> targets, Send send);
+  // `targets`: which of the directory's voxel tasks are shipped to.  What lies in each cell of the tree is noted in
+  // `configuration`.
+  Shipping(Configure& configuration, std::set<std::uint32_t> targets, Send send);
 
-  // What an object takes on the wire, without what it refers to.
-  static std::size_t bytesOf(const SceneObject& object) { return encode(object).size(); }
-
-  void object(const SceneObject& object, const Bounds& bounds, std::span<const NodeItem* const> nodes);
-  void finish();  // sends what is left
-
-  std::uint64_t shipped() const { return shipped_; }  // objects, counted once per task
+  SceneSink& sink() { return stream_; }  // for the whole scene
+  void finish();                         // sends what is left
 
  private:
   struct Parcel {  // for one task
@@ -43,19 +37,17 @@ class Shipping {
     std::set<std::uint32_t> surfaces, nodes, definitions;  // that it has
   };
 
+  void ship(const SceneObject& object, const Bounds& bounds, std::span<const NodeItem* const> nodes);
   void add(std::uint32_t task, Item item);
   void addSurface(std::uint32_t task, SurfaceId id);
+  void addNode(std::uint32_t task, const NodeItem& node);
   void addNeeds(std::uint32_t task, const SceneObject& object);
-  void addFrame(std::uint32_t task, const NodeItem& node);
 
-  ObjectStream& stream_;
-  const BinTree& tree_;
-  const Directory& directory_;
+  Configure& configuration_;
   std::set<std::uint32_t> targets_;
   Send send_;
+  ObjectStream stream_;
   std::unordered_map<std::uint32_t, Parcel> parcels_;
-  std::vector<VoxelId> touched_;
-  std::uint64_t shipped_ = 0;
 };
 
 }  // namespace rayshade

@@ -31,7 +31,7 @@ struct DemandPolicy {
   std::uint32_t outstanding = 64;       // cells asked for at a time
 };
 
-// What pyramid tasks need to make rays of samples.
+// What is asked for: from here to rays of samples.
 struct FrameRequest {
   View view;
   PictureSpec picture;

@@ -237,7 +237,7 @@ int run(HostProgramOptions& options) {
   if (options.plan) {
     const std::vector<HostInfo> hosts = plannedHosts(options.machine);
     applySchedule(options, static_cast<std::uint32_t>(hosts.size()));
-    std::fputs(describePlan(hosts, options.host, survey, {view, head.picture, head.settings}, work).c_str(),
+    std::fputs(describePlan(hosts, options.host, survey, {view, head.picture}, head.settings, work).c_str(),
                stdout);
     return 0;
   }
@@ -284,7 +284,7 @@ int run(HostProgramOptions& options) {
           appendRow(sum, row);
           if (everyRows > 0 && ++rows % everyRows == 0) sayLine(rows, area.height, area.width);
         },
-        [&](const HostTask::Progress& p) { progress.show(p.rows, p.allRows, p.samples, "samples"); });
+        [&](const HostTask::Completed& p) { progress.show(p.rows, p.allRows, p.samples, "samples"); });
     writer->finish();
     progress.clear();
     const std::uint64_t pictureSum = checksum(sum);

@@ -5,7 +5,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "pvm/host/host_task.h"
+#include "pvm/host/summary.h"
 
 namespace rayshade {
 

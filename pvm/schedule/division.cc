@@ -15,7 +15,8 @@ constexpr std::uint64_t kObjectsPerBox = 4, kMostBoxes = 4096;
 
 }  // namespace
 
-Division divideSpace(Survey& survey, const Sight& sight, const HostOptions& options, std::uint32_t tasks) {
+Division divideSpace(Survey& survey, const FrameRequest& request, const SceneSettings& settings,
+                     const HostOptions& options, std::uint32_t tasks) {
   const std::uint32_t voxels = tasks * std::max(1u, options.voxelsPerTask);
   const bool fetches = options.wishes.pyramids > 0 || options.policy.shadows != ShadowPolicy::forward;
   const std::uint64_t bySize = fetches ? std::min<std::uint64_t>(survey.objects / kObjectsPerCell, 1 << 16)
@@ -24,7 +25,7 @@ Division divideSpace(Survey& survey, const Sight& sight, const HostOptions& opti
   Division division;
   std::vector<CostBox> costs;
   if (options.split == Split::cost)
-    costs = predictCost(survey.world, survey.sample, sight.view, sight.picture, sight.settings);
+    costs = predictCost(survey.world, survey.sample, request.view, request.picture, settings);
   division.tree = buildBinTree(survey.world, {.voxels = voxels, .cells = std::max(cells, voxels)},
                                survey.density, std::move(costs));
   for (std::uint32_t voxel = 0; voxel < voxelCount(division.tree); ++voxel)

@@ -6,7 +6,6 @@
 #pragma once
 
 #include "pvm/schedule/options.h"
-#include "rayshade/scene/camera.h"
 #include "rayshade/space/survey.h"
 
 namespace rayshade {
@@ -16,14 +15,8 @@ struct Division {
   std::vector<std::uint32_t> owners;  // by voxel: the task of a cluster that has it
 };
 
-// What is looked at: it decides where the work will be.
-struct Sight {
-  const View& view;
-  const PictureSpec& picture;
-  const SceneSettings& settings;
-};
-
-// `tasks`: of a cluster, at least one.
-Division divideSpace(Survey& survey, const Sight& sight, const HostOptions& options, std::uint32_t tasks);
+// What is looked at decides where the work will be.  `tasks`: of a cluster, at least one.
+Division divideSpace(Survey& survey, const FrameRequest& request, const SceneSettings& settings,
+                     const HostOptions& options, std::uint32_t tasks);
 
 }  // namespace rayshade

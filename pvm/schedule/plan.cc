@@ -86,14 +86,14 @@ std::vector<HostInfo> hostsAfterJoining(std::vector<HostInfo> running, const std
 }
 
 std::string describePlan(const std::vector<HostInfo>& hosts, HostOptions options, Survey survey,
-                         const Sight& sight, const SceneWork& work) {
+                         const FrameRequest& request, const SceneSettings& settings, const SceneWork& work) {
   NeededTasks needed = neededTasks(work, options, hosts.size());
   options.wishes = needed.wishes;
   const std::vector<Placement> placements = mapProcesses(hosts, options.wishes);
   const auto voxelTasks = static_cast<std::uint32_t>(std::count_if(
       placements.begin(), placements.end(), [](const Placement& p) { return p.role == Role::voxelTrace; }));
   const std::uint32_t clusters = std::max(1u, options.wishes.clusters), perCluster = voxelTasks / clusters;
-  const Division division = divideSpace(survey, sight, options, perCluster);
+  const Division division = divideSpace(survey, request, settings, options, perCluster);
   std::vector<std::uint64_t> objects(perCluster);  // by task of a cluster: whose centres lie in its voxels
   std::vector<VoxelId> at;
   for (const DensityGrid::Cube& cube : survey.density.cubes()) {
@@ -107,7 +107,7 @@ std::string describePlan(const std::vector<HostInfo>& hosts, HostOptions options
   add(text, "%" PRIu64 " objects in %u voxels of equal %s and %u cells; %u cluster%s\n", survey.objects,
       voxelCount(division.tree), options.split == Split::cost ? "predicted work" : "size",
       cellCount(division.tree), clusters, clusters > 1 ? "s" : "");
-  addPolicy(text, options, sight.settings);
+  addPolicy(text, options, settings);
 
   add(text, "\n%-21s %-16s %9s  %s\n", "task", "host", "objects", "why there");
   add(text, "%-21s %-16s %9s  %s\n", "host 0", hosts[0].name.c_str(), "-", "where it is started");

@@ -22,6 +22,6 @@ std::vector<HostInfo> hostsAfterJoining(std::vector<HostInfo> running, const std
 // Lines of text: hosts, what travels, how space is divided, and the tasks with the reason for each, and for those that are
 // not started.  `survey`: of the first frame.
 std::string describePlan(const std::vector<HostInfo>& hosts, HostOptions options, Survey survey,
-                         const Sight& sight, const SceneWork& work);
+                         const FrameRequest& request, const SceneSettings& settings, const SceneWork& work);
 
 }  // namespace rayshade

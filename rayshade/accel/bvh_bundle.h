@@ -1,7 +1,7 @@
 // How a bundle of rays goes through a Bvh: each box is tested for eight rays at a time.
 //
 // Rays of one octant go together, near to far along the first of them; as soon as no more than a few of them are left in
-// a node each goes on alone.  The tests are those of single rays (bvh.h), so no box is missed.
+// a node each goes on alone.  The tests are those of single rays (bvh_ray.h), so no box is missed.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -10,93 +10,133 @@
 namespace rayshade {
 namespace bvh_detail {
 
-[[gnu::always_inline]] inline std::uint32_t anyBits(const Int8& lanes) {
-  const auto wide = reinterpret_cast<const Long4&>(lanes);
+// The rays of a bundle as BoxRays, side by side: ray i is number i % kGroup of group i / kGroup.
+struct BoxRays {
+  static constexpr std::size_t kGroup = 8, kGroups = kBundleSize / kGroup;
+  Float8 nearOrigin[3][kGroups], farOrigin[3][kGroups], nearInverse[3][kGroups], farInverse[3][kGroups];
+  Float8 limit[kGroups];
+  float direction[3][kBundleSize];
+  double scale[kBundleSize], start[kBundleSize];
+  RaySet negative[3];  // direction along an axis
+
+  void setLimit(std::size_t i, double tMax) {
+    limit[i / kGroup][i % kGroup] =
+        static_cast<float>((tMax * scale[i] - start[i]) * (1 + margins::kToFloat));
+  }
+  BoxRay one(std::size_t i, std::uint32_t octant) const {
+    const std::size_t group = i / kGroup, at = i % kGroup;
+    BoxRay ray;
+    for (int axis = 0; axis < 3; ++axis) {
+      ray.nearOrigin[axis] = splat(nearOrigin[axis][group][at]);
+      ray.farOrigin[axis] = splat(farOrigin[axis][group][at]);
+      ray.nearInverse[axis] = splat(nearInverse[axis][group][at]);
+      ray.farInverse[axis] = splat(farInverse[axis][group][at]);
+    }
+    ray.limit = splat(limit[group][at]);
+    ray.direction = Float4{direction[0][i], direction[1][i], direction[2][i], 0};
+    ray.scale = scale[i];
+    ray.start = start[i];
+    ray.octant = octant;
+    return ray;
+  }
+};
+
+// All bits that any of the eight has.
+[[gnu::always_inline]] inline std::uint32_t anyBits(const Int8& eight) {
+  const auto wide = reinterpret_cast<const Long4&>(eight);
   const auto either = static_cast<std::uint64_t>(wide[0] | wide[1] | wide[2] | wide[3]);
   return static_cast<std::uint32_t>(either | either >> 32);
 }
 
-}  // namespace bvh_detail
+// Rays that enter, and those that must be tested against everything.
+struct Entered {
+  RaySet inside, everything;
+};
 
-// enter() of bvh.cc for eight rays at a time, with the same margins.
+// enter() of bvh_ray.cc for eight rays at a time, with the same margins.
 template <class Query>
-Bvh::Entered Bvh::enterTogether(std::span<const Query> bundle, BoxRays& rays) const {
-  constexpr std::size_t kLanes = BoxRays::kLanes;
+[[gnu::always_inline]] inline Entered enterTogether(const BvhTree& tree, std::span<const Query> bundle,
+                                                    BoxRays& rays) {
+  constexpr std::size_t kGroup = BoxRays::kGroup;
   Entered entered{0, 0};
   rays.negative[0] = rays.negative[1] = rays.negative[2] = 0;
-  for (std::size_t group = 0; group * kLanes < bundle.size(); ++group) {
-    const std::size_t first = group * kLanes, count = std::min(kLanes, bundle.size() - first);
+  for (std::size_t group = 0; group * kGroup < bundle.size(); ++group) {
+    const std::size_t first = group * kGroup, count = std::min(kGroup, bundle.size() - first);
     Double8 origin[3], direction[3], tMin, tMax;
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      const Query& query = bundle[first + std::min(lane, count - 1)];
-      origin[0][lane] = query.ray.origin.x;
-      origin[1][lane] = query.ray.origin.y;
-      origin[2][lane] = query.ray.origin.z;
-      direction[0][lane] = query.ray.direction.x;
-      direction[1][lane] = query.ray.direction.y;
-      direction[2][lane] = query.ray.direction.z;
-      tMin[lane] = query.tMin;
-      tMax[lane] = query.tMax;
+    for (std::size_t i = 0; i < kGroup; ++i) {
+      const Query& query = bundle[first + std::min(i, count - 1)];
+      origin[0][i] = query.ray.origin.x;
+      origin[1][i] = query.ray.origin.y;
+      origin[2][i] = query.ray.origin.z;
+      direction[0][i] = query.ray.direction.x;
+      direction[1][i] = query.ray.direction.y;
+      direction[2][i] = query.ray.direction.z;
+      tMin[i] = query.tMin;
+      tMax[i] = query.tMax;
     }
     const auto magnitude = [](const Double8& x) __attribute__((always_inline)) { return x < 0 ? -x : x; };
     const Double8 lengths[3] = {magnitude(direction[0]), magnitude(direction[1]), magnitude(direction[2])};
     Double8 reach = lengths[0] > lengths[1] ? lengths[0] : lengths[1];
     reach = reach > lengths[2] ? reach : lengths[2];
     const Double8 stretch = reinterpret_cast<Double8>(reinterpret_cast<Long8>(reach) & 0x7ff0000000000000);
-    const Double8 scale = stretch * scale_;
+    const Double8 scale = stretch * tree.scale;
 
     Double8 start = tMin * scale, end = tMax * scale;
     Double8 place[3], d[3], exactly[3], away[3];
     // NaN and infinity fail the comparison, too.
-    Long8 ordinary = (reach >= kSmallest) & (reach <= kLargest);
+    Long8 ordinary = (reach >= margins::kSmallest) & (reach <= margins::kLargest);
     for (int axis = 0; axis < 3; ++axis) {
-      place[axis] = (origin[axis] - centre_[axis]) * scale_;
+      place[axis] = (origin[axis] - tree.centre[axis]) * tree.scale;
       away[axis] = magnitude(place[axis]);
-      ordinary &= (away[axis] <= kFarthest) & (lengths[axis] <= kLargest);
+      ordinary &= (away[axis] <= margins::kFarthest) & (lengths[axis] <= margins::kLargest);
       d[axis] = direction[axis] / stretch;
       exactly[axis] = 1.0 / d[axis];
-      const Double8 slack = 0x1p-50 * (1.0 + away[axis]);
-      const Double8 toLow = (box_.low[axis] - slack - place[axis]) * exactly[axis];
-      const Double8 toHigh = (box_.high[axis] + slack - place[axis]) * exactly[axis];
+      const Double8 slack = margins::kSlack * (1.0 + away[axis]);
+      const Double8 toLow = (tree.box.low[axis] - slack - place[axis]) * exactly[axis];
+      const Double8 toHigh = (tree.box.high[axis] + slack - place[axis]) * exactly[axis];
       const Double8 near = exactly[axis] > 0 ? toLow : toHigh, far = exactly[axis] > 0 ? toHigh : toLow;
       start = near > start ? near : start;
       end = far < end ? far : end;
     }
     const Long8 inside = ordinary & (start <= end);
-    start = start < -kLargest ? Double8{} - kLargest : start > kLargest ? Double8{} + kLargest : start;
-    rays.limit[group] = __builtin_convertvector((tMax * scale - start) * (1 + 0x1p-22), Float8);
+    start = start < -margins::kLargest  ? Double8{} - margins::kLargest
+            : start > margins::kLargest ? Double8{} + margins::kLargest
+                                        : start;
+    rays.limit[group] = __builtin_convertvector((tMax * scale - start) * (1 + margins::kToFloat), Float8);
     for (int axis = 0; axis < 3; ++axis) {
       const Double8 step = start * d[axis], p = place[axis] + step;
-      const Double8 margin = 0x1p-22 * magnitude(p) + 0x1p-49 * (1.0 + away[axis] + magnitude(step));
+      const Double8 margin =
+          margins::kToFloat * magnitude(p) + 2 * margins::kSlack * (1.0 + away[axis] + magnitude(step));
       const Float8 at = __builtin_convertvector(p, Float8), moved = __builtin_convertvector(margin, Float8);
-      // Off the planes of the box: at least 2^-60, with its sign, which -0 has, too.
+      // Off the planes of the box: at least the flattest, with its sign, which -0 has, too.
       const Long8 sign = reinterpret_cast<Long8>(d[axis]) >> 63;
-      const Double8 least = sign != 0 ? Double8{} - 0x1p+60 : Double8{} + 0x1p+60;
-      const Double8 inverse = magnitude(d[axis]) > 0x1p-60 ? exactly[axis] : least;
+      const Double8 least =
+          sign != 0 ? Double8{} - margins::kSteepestInverse : Double8{} + margins::kSteepestInverse;
+      const Double8 inverse = magnitude(d[axis]) > margins::kFlattest ? exactly[axis] : least;
       const Float8 narrow = __builtin_convertvector(inverse, Float8);
       const Float8 forward = narrow > 0 ? moved : -moved;
       rays.nearOrigin[axis][group] = at + forward;
       rays.farOrigin[axis][group] = at - forward;
-      rays.nearInverse[axis][group] = narrow * (1 - 0x1p-21f);
-      rays.farInverse[axis][group] = narrow * (1 + 0x1p-21f);
+      rays.nearInverse[axis][group] = narrow * (1 - margins::kSlab);
+      rays.farInverse[axis][group] = narrow * (1 + margins::kSlab);
       const Float8 along = __builtin_convertvector(d[axis], Float8);
-      for (std::size_t lane = 0; lane < kLanes; ++lane) {
-        rays.direction[axis][first + lane] = along[lane];
-        rays.negative[axis] |= static_cast<RaySet>(sign[lane] & 1) << (first + lane);
+      for (std::size_t i = 0; i < kGroup; ++i) {
+        rays.direction[axis][first + i] = along[i];
+        rays.negative[axis] |= static_cast<RaySet>(sign[i] & 1) << (first + i);
       }
     }
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      rays.scale[first + lane] = scale[lane];
-      rays.start[first + lane] = start[lane];
+    for (std::size_t i = 0; i < kGroup; ++i) {
+      rays.scale[first + i] = scale[i];
+      rays.start[first + i] = start[i];
     }
-    for (std::size_t lane = 0; lane < count; ++lane) {
-      const RaySet bit = RaySet{1} << (first + lane);
-      if (inside[lane] != 0) {
+    for (std::size_t i = 0; i < count; ++i) {
+      const RaySet bit = RaySet{1} << (first + i);
+      if (inside[i] != 0) {
         entered.inside |= bit;
-      } else if (ordinary[lane] == 0) {
-        const Query& query = bundle[first + lane];
+      } else if (ordinary[i] == 0) {
+        const Query& query = bundle[first + i];
         BoxRay alone;
-        const Entry entry = enter(query.ray.origin, query.ray.direction, query.tMin, query.tMax, alone);
+        const Entry entry = enter(tree, query.ray.origin, query.ray.direction, query.tMin, query.tMax, alone);
         // A ray that stands still is no ordinary one; to look at all is right for any.
         if (entry != Entry::kMissed) entered.everything |= bit;
       }
@@ -106,22 +146,23 @@ Bvh::Entered Bvh::enterTogether(std::span<const Query> bundle, BoxRays& rays) co
 }
 
 template <bool kSorted, class Query, class Leaf>
-void Bvh::traverseTogether(std::span<Query> bundle, Leaf&& leaf) const {
+[[gnu::always_inline]] inline void traverseTogether(const BvhTree& tree, std::span<Query> bundle,
+                                                    Leaf&& leaf) {
   RaySet waiting = static_cast<RaySet>((std::uint64_t{1} << bundle.size()) - 1);
   const auto visitLeaf = [&](std::uint32_t first, std::uint32_t count, RaySet asking) {
     const RaySet answer = leaf(first, count, asking);
     if constexpr (!kSorted) waiting &= ~answer;
     return answer;
   };
-  if (unbounded_ > 0) visitLeaf(inTree_, unbounded_, waiting);
-  if (inTree_ == 0) return;
+  if (tree.unbounded > 0) visitLeaf(tree.inTree, tree.unbounded, waiting);
+  if (tree.inTree == 0) return;
   BoxRays rays;
-  const Entered entered = enterTogether(std::span<const Query>(bundle), rays);
-  if ((entered.everything & waiting) != 0) visitLeaf(0u, inTree_, entered.everything & waiting);
+  const Entered entered = enterTogether(tree, std::span<const Query>(bundle), rays);
+  if ((entered.everything & waiting) != 0) visitLeaf(0u, tree.inTree, entered.everything & waiting);
 
   struct Open {
     float depth;  // of the near corner along one of the rays
-    std::uint32_t child;
+    ChildRef child;
     RaySet rays;
   };
   Open stack[kStackSize];
@@ -131,12 +172,12 @@ void Bvh::traverseTogether(std::span<Query> bundle, Leaf&& leaf) const {
       going &= (octant >> axis & 1) != 0 ? rays.negative[axis] : ~rays.negative[axis];
     if (going == 0) continue;
     int size = 0;
-    stack[size++] = {0, root_, going};
+    stack[size++] = {0, tree.root, going};
     while (size > 0) {
       Open here = stack[--size];
       here.rays &= waiting;
       if (here.rays == 0) continue;
-      if ((here.child & kLeaf) != 0) {
+      if (isLeaf(here.child)) {
         const LeafItems items(here.child);
         const RaySet answer = visitLeaf(items.first, items.count, here.rays);
         if constexpr (kSorted) forEachRay(answer, [&](std::size_t i) { rays.setLimit(i, bundle[i].tMax); });
@@ -147,7 +188,7 @@ void Bvh::traverseTogether(std::span<Query> bundle, Leaf&& leaf) const {
         forEachRay(here.rays, [&](std::size_t i) {
           const RaySet only = RaySet{1} << i;
           BoxRay ray = rays.one(i, octant);
-          traverseFrom<kSorted>(here.child, ray, bundle[i].tMax,
+          traverseFrom<kSorted>(tree, here.child, ray, bundle[i].tMax,
                                 [&](std::uint32_t first, std::uint32_t count) {
                                   return visitLeaf(first, count, only) != 0 && !kSorted;
                                 });
@@ -155,12 +196,12 @@ void Bvh::traverseTogether(std::span<Query> bundle, Leaf&& leaf) const {
         });
         continue;
       }
-      const Node& node = nodes_[here.child];
+      const BvhNode& node = tree.nodes[here.child];
       const std::size_t x = octant & 1, y = octant >> 1 & 1, z = octant >> 2 & 1;
       const Float4 &nearX = node.plane[3 * x], &nearY = node.plane[1 + 3 * y], &nearZ = node.plane[2 + 3 * z];
       const Float4 &farX = node.plane[3 - 3 * x], &farY = node.plane[4 - 3 * y],
                    &farZ = node.plane[5 - 3 * z];
-      Int8 touching[4] = {};  // of each child; a lane has the rays of its place in all groups
+      Int8 touching[4] = {};  // of each child: the rays, those of one place in all groups together
       for (std::size_t group = 0; group < BoxRays::kGroups; ++group) {
         if ((here.rays >> (8 * group) & 0xff) == 0) continue;
         const Int8 bits = Int8{1, 2, 4, 8, 16, 32, 64, 128} << static_cast<std::int32_t>(8 * group);
@@ -171,18 +212,18 @@ void Bvh::traverseTogether(std::span<Query> bundle, Leaf&& leaf) const {
         const Float8 toY = rays.farOrigin[1][group], farPerY = rays.farInverse[1][group];
         const Float8 toZ = rays.farOrigin[2][group], farPerZ = rays.farInverse[2][group];
         const Float8 limit = rays.limit[group];
-        for (int lane = 0; lane < 4; ++lane) {
-          const Float8 enterX = (nearX[lane] - fromX) * perX, enterY = (nearY[lane] - fromY) * perY;
-          const Float8 enterZ = (nearZ[lane] - fromZ) * perZ;
-          const Float8 leaveX = (farX[lane] - toX) * farPerX, leaveY = (farY[lane] - toY) * farPerY;
-          const Float8 leaveZ = (farZ[lane] - toZ) * farPerZ;
+        for (int child = 0; child < 4; ++child) {
+          const Float8 enterX = (nearX[child] - fromX) * perX, enterY = (nearY[child] - fromY) * perY;
+          const Float8 enterZ = (nearZ[child] - fromZ) * perZ;
+          const Float8 leaveX = (farX[child] - toX) * farPerX, leaveY = (farY[child] - toY) * farPerY;
+          const Float8 leaveZ = (farZ[child] - toZ) * farPerZ;
           Float8 enters = enterX > enterY ? enterX : enterY;
           const Float8 above = enterZ > 0 ? enterZ : Float8{};
           enters = enters > above ? enters : above;
           Float8 leaves = leaveX < leaveY ? leaveX : leaveY;
           const Float8 below = leaveZ < limit ? leaveZ : limit;
           leaves = leaves < below ? leaves : below;
-          touching[lane] |= (enters <= leaves) & bits;
+          touching[child] |= (enters <= leaves) & bits;
         }
       }
       Float4 depth{};
@@ -192,10 +233,10 @@ void Bvh::traverseTogether(std::span<Query> bundle, Leaf&& leaf) const {
                 nearZ * splat(rays.direction[2][leader]);
       }
       const int base = size;
-      for (int lane = 0; lane < 4; ++lane) {
-        const RaySet touched = bvh_detail::anyBits(touching[lane]) & here.rays;
+      for (int child = 0; child < 4; ++child) {
+        const RaySet touched = anyBits(touching[child]) & here.rays;
         if (touched == 0) continue;
-        const Open open{depth[lane], node.child[lane], touched};
+        const Open open{depth[child], node.child[child], touched};
         int at = size++;
         if constexpr (kSorted)
           for (; at > base && stack[at - 1].depth < open.depth; --at) stack[at] = stack[at - 1];
@@ -205,4 +246,5 @@ void Bvh::traverseTogether(std::span<Query> bundle, Leaf&& leaf) const {
   }
 }
 
+}  // namespace bvh_detail
 }  // namespace rayshade

@@ -37,7 +37,7 @@ class ObjectStream : public SceneSink {
   std::uint64_t objects() const { return objects_; }  // of the world
 
  private:
-  struct Definition {
+  struct SpooledDefinition {
     std::vector<std::pair<std::uint64_t, std::uint64_t>> pieces;  // offset and size in definitionSpool_
     Bounds bounds;
   };
@@ -57,7 +57,7 @@ class ObjectStream : public SceneSink {
   Exposure exposure_;
   Consumer consumer_;
   Spool surfaceSpool_;  // records of one size, in the order of their numbers
-  std::unordered_map<std::uint32_t, Definition> definitions_;
+  std::unordered_map<std::uint32_t, SpooledDefinition> definitions_;
   Spool definitionSpool_;
   Statement statement_;
   std::uint64_t objects_ = 0;

@@ -25,7 +25,7 @@ constexpr Known kKnown[] = {
     {"rayshade/image/flip.cc", "0.0047", "a filter of the error measure"},
     {"rayshade/image/flip.cc", "0.0053", "a filter of the error measure"},
     {"rayshade/image/flip.cc", "1e-5", "a filter of the error measure"},
-    {"rayshade/sampling/sampler.cc", "1e-5", "sum of two colours"},
+    {"rayshade/sampling/cross_sweep.cc", "1e-5", "sum of two colours"},
     {"rayshade/program/main.cc", "1e-3", "kilobytes in a report"},
     {"rayshade/program/main.cc", "1e-6", "bytes in a report"},
     {"rayshade/program/main.cc", "1e-9", "seconds in a report"},

@@ -48,8 +48,7 @@ TEST(Plan, HostsOfARunningMachineStayAndOthersJoin) {
 struct Surveyed {
   Survey survey;
   SceneHead head;
-  View view = viewOf(head.camera, head.picture).value();
-  Sight sight() const { return {view, head.picture, head.settings}; }
+  FrameRequest request() const { return {viewOf(head.camera, head.picture).value(), head.picture}; }
 };
 Surveyed surveyOf(const std::string& scene) {
   SurveySink sink({});
@@ -61,7 +60,7 @@ std::string planOf(const std::string& scene, const std::vector<HostInfo>& hosts,
   FeatureSink features;
   jobOfText(scene).read(features);
   const SceneWork work = sceneWork(scenePlan(features.features(), s.head), s.survey.objects);
-  return describePlan(hosts, options, s.survey, s.sight(), work);
+  return describePlan(hosts, options, s.survey, s.request(), s.head.settings, work);
 }
 std::vector<std::string> lines(const std::string& text) {
   std::vector<std::string> all;
@@ -125,7 +124,7 @@ TEST(Division, EveryVoxelHasAnOwnerEvenWhenMoreAreWishedThanTreesMayHave) {
   HostOptions options;
   options.voxelsPerTask = 64;
   for (std::uint32_t tasks : {1u, 3u, 4096u}) {
-    const Division division = divideSpace(scene.survey, scene.sight(), options, tasks);
+    const Division division = divideSpace(scene.survey, scene.request(), scene.head.settings, options, tasks);
     ASSERT_EQ(division.owners.size(), voxelCount(division.tree));
     EXPECT_EQ(*std::max_element(division.owners.begin(), division.owners.end()), tasks - 1);
   }
@@ -138,13 +137,14 @@ TEST(Division, VoxelsOfEqualCostAreSmallWhereTheEyeLooks) {
   Surveyed s = surveyOf(scene);
   HostOptions options;
   options.split = Split::cost;
-  const Division division = divideSpace(s.survey, s.sight(), options, 8);
+  const Division division = divideSpace(s.survey, s.request(), s.head.settings, options, 8);
   std::vector<VoxelId> seen;  // the eye sees x from 5.6 to 14.4
   voxelsTouching(division.tree, {{6, -4, -1}, {14, 4, 1}}, seen);
   EXPECT_GE(seen.size(), 6u);
   options.split = Split::equal;
   seen.clear();
-  voxelsTouching(divideSpace(s.survey, s.sight(), options, 16).tree, {{8, -2, -1}, {9, -1, 1}}, seen);
+  voxelsTouching(divideSpace(s.survey, s.request(), s.head.settings, options, 16).tree,
+                 {{8, -2, -1}, {9, -1, 1}}, seen);
   EXPECT_LE(seen.size(), 4u);
 }
 

@@ -1,0 +1,148 @@
+// libpng reports errors by longjmp.  Each call of it sits in a function that has no object with a destructor
+// between setjmp and the jump; the message is kept and thrown from outside.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rayshade/image/png_file.h"
+
+#include <png.h>
+
+#include <array>
+#include <cerrno>
+#include <csetjmp>
+#include <cstring>
+
+#include "rayshade/image/picture_format.h"
+
+namespace rayshade {
+namespace {
+
+// What libpng's error handler leaves behind.
+struct PngMessage {
+  std::array<char, 200> text{};
+};
+
+[[noreturn]] void keepMessage(png_structp png, png_const_charp text) {
+  auto* message = static_cast<PngMessage*>(png_get_error_ptr(png));
+  std::snprintf(message->text.data(), message->text.size(), "%s", text);
+  png_longjmp(png, 1);
+}
+void dropWarning(png_structp, png_const_charp) {}
+
+// Runs calls of libpng; false: it gave up.
+template <class Calls>
+bool succeeds(png_structp png, const Calls& calls) {
+  if (setjmp(png_jmpbuf(png)) != 0) return false;
+  calls();
+  return true;
+}
+
+[[noreturn]] void giveUp(const std::string& file, const PngMessage& message) {
+  failOn(file, message.text[0] != 0 ? message.text.data() : "no memory for libpng");
+}
+
+void writeBytes(png_structp png, png_bytep bytes, std::size_t size) {
+  if (!static_cast<CompleteFile*>(png_get_io_ptr(png))->put(bytes, size))
+    png_error(png, std::strerror(errno));
+}
+
+// What libpng reads from.
+struct PngSource {
+  std::string_view left;
+  static void read(png_structp png, png_bytep to, std::size_t size) {
+    auto& left = static_cast<PngSource*>(png_get_io_ptr(png))->left;
+    if (size > left.size()) png_error(png, "ends too early");
+    std::memcpy(to, left.data(), size);
+    left.remove_prefix(size);
+  }
+};
+
+struct PngReader {
+  png_structp png = nullptr;
+  png_infop info = nullptr;
+  ~PngReader() { png_destroy_read_struct(&png, &info, nullptr); }
+};
+
+}  // namespace
+
+struct PngStream::State {
+  CompleteFile& output;
+  PngMessage message;
+  png_structp png = nullptr;
+  png_infop info = nullptr;
+  ~State() { png_destroy_write_struct(&png, &info); }
+
+  template <class Calls>
+  void run(const Calls& calls) {
+    if (!succeeds(png, calls)) giveUp(output.name(), message);
+  }
+};
+
+PngStream::PngStream(CompleteFile& output, std::int32_t width, std::int32_t height, int bits)
+    : state_(new State{output, {}}) {
+  State& s = *state_;
+  s.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &s.message, keepMessage, dropWarning);
+  s.info = s.png != nullptr ? png_create_info_struct(s.png) : nullptr;
+  if (s.info == nullptr) giveUp(output.name(), s.message);
+  s.run([&] {
+    png_set_write_fn(s.png, &output, writeBytes, [](png_structp) {});
+    png_set_IHDR(s.png, s.info, static_cast<png_uint_32>(width), static_cast<png_uint_32>(height), bits,
+                 PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
+                 PNG_FILTER_TYPE_DEFAULT);
+    png_write_info(s.png, s.info);
+  });
+}
+
+PngStream::~PngStream() = default;
+
+void PngStream::row(const std::uint8_t* bytes) {
+  state_->run([&] { png_write_row(state_->png, bytes); });
+}
+
+void PngStream::finish() {
+  state_->run([&] { png_write_end(state_->png, state_->info); });
+}
+
+Picture readPng(std::string_view content, const std::string& name) {
+  PngMessage message;
+  PngSource source{content};
+  PngReader reader;
+  auto check = [&](bool good) {
+    if (!good) giveUp(name, message);
+  };
+  reader.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &message, keepMessage, dropWarning);
+  check(reader.png != nullptr);
+  reader.info = png_create_info_struct(reader.png);
+  check(reader.info != nullptr);
+
+  check(succeeds(reader.png, [&] {
+    png_set_read_fn(reader.png, &source, PngSource::read);
+    png_read_info(reader.png, reader.info);
+    png_set_expand(reader.png);
+    png_set_gray_to_rgb(reader.png);
+    png_set_strip_alpha(reader.png);
+    png_set_interlace_handling(reader.png);
+    png_read_update_info(reader.png, reader.info);
+  }));
+  Picture picture;
+  picture.width = static_cast<std::int32_t>(png_get_image_width(reader.png, reader.info));
+  picture.height = static_cast<std::int32_t>(png_get_image_height(reader.png, reader.info));
+  // A byte of a PNG stands for at most 1032 bytes of pixels (zlib, Maximum Compression Factor), and a pixel of
+  // the file has at least one bit: what it claims is believed only if it can be there.
+  constexpr std::size_t kMostPerByte = 1032 * 8;
+  const std::size_t values = countValues(picture, 1, content.size() * kMostPerByte * 3, name);
+
+  const std::size_t size = png_get_bit_depth(reader.png, reader.info) == 16 ? 2 : 1;
+  std::vector<png_byte> bytes(values * size);
+  std::vector<png_bytep> rows;
+  const std::size_t length = bytes.size() / static_cast<std::size_t>(picture.height);
+  for (std::size_t at = 0; at < bytes.size(); at += length) rows.push_back(&bytes[at]);
+  check(png_get_rowbytes(reader.png, reader.info) == length);
+  check(succeeds(reader.png, [&] { png_read_image(reader.png, rows.data()); }));
+
+  const std::uint32_t most = size == 2 ? 65535 : 255;
+  picture.pixels.reserve(values);
+  for (std::size_t i = 0; i < bytes.size(); i += size)
+    picture.pixels.push_back(lightOf(size == 2 ? bytes[i] * 256u + bytes[i + 1] : bytes[i], most));
+  return picture;
+}
+
+}  // namespace rayshade
