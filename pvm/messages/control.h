@@ -43,22 +43,26 @@ Ray primaryRay(const FrameRequest& request, const Exposure& exposure, const Samp
 // Forget all items: another frame begins.
 struct Forget {
   static constexpr bool isFact = true;
+  static constexpr std::uint8_t tag = 0;
 };
 
 // A batch of a task's share of the model.
 struct Items {
   static constexpr bool isFact = true;
+  static constexpr std::uint8_t tag = 1;
   std::vector<Item> items;
 };
 
 // One batch was taken in: there may be another.
 struct ItemsTaken {
   static constexpr bool isFact = true;
+  static constexpr std::uint8_t tag = 2;
 };
 
 // A new epoch: drop all work, keep the items, answer Ready.
 struct Configure {
   static constexpr bool isFact = true;
+  static constexpr std::uint8_t tag = 3;
   Epoch epoch{};
   SceneSettings settings;
   BinTree tree;
@@ -74,6 +78,7 @@ struct Configure {
 
 struct Ready {
   static constexpr bool isFact = true;
+  static constexpr std::uint8_t tag = 4;
   Epoch epoch{};
   std::uint64_t arithmetic = 0;  // fingerprint: equal on hosts that compute the same bits
   std::uint64_t objects = 0;     // that the task holds
@@ -85,10 +90,12 @@ struct Ready {
 // How busy a task is, a few times a second, when shading is placed dynamically; and what follows from it.
 struct Load {
   static constexpr bool isFact = true;
+  static constexpr std::uint8_t tag = 17;
   double busy = 0;  // share of the time since the last one
 };
 struct Weights {
   static constexpr bool isFact = true;
+  static constexpr std::uint8_t tag = 18;
   Epoch epoch{};
   std::vector<std::uint32_t> shadeWeights;
 };
@@ -96,10 +103,12 @@ struct Weights {
 // The end: answer Report and leave.
 struct Finish {
   static constexpr bool isFact = true;
+  static constexpr std::uint8_t tag = 5;
 };
 
 struct Report {
   static constexpr bool isFact = true;
+  static constexpr std::uint8_t tag = 6;
   TraceCounts counts;
   std::uint64_t combined = 0;  // intersections shaded
   std::uint64_t messagesIn = 0, messagesOut = 0, packetsIn = 0, packetsOut = 0, bytesIn = 0, bytesOut = 0;
@@ -119,9 +128,11 @@ struct Report {
 
 struct Ping {
   static constexpr bool isFact = true;
+  static constexpr std::uint8_t tag = 7;
 };
 struct Pong {
   static constexpr bool isFact = true;
+  static constexpr std::uint8_t tag = 8;
 };
 
 bool isComplete(const Configure& message);
@@ -197,5 +208,8 @@ template <class Archive>
 void serialize(Archive& archive, Weights& m) {
   archive(m.epoch, m.shadeWeights);
 }
+
+using ControlMessages =
+    TypeList<Forget, Items, ItemsTaken, Configure, Ready, Load, Weights, Finish, Report, Ping, Pong>;
 
 }  // namespace rayshade

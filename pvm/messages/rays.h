@@ -3,6 +3,7 @@
 #pragma once
 
 #include "pvm/messages/addresses.h"
+#include "rayshade/base/type_list.h"
 #include "rayshade/sampling/sampler.h"
 #include "rayshade/shading/combine.h"
 
@@ -11,6 +12,7 @@ namespace rayshade {
 // Follow this ray from position `step` of its walk.
 struct RayTask {
   static constexpr bool isFact = false;
+  static constexpr std::uint8_t tag = 9;
   Ray ray;
   std::uint32_t step = 0;
   ReplyTo to;
@@ -38,6 +40,7 @@ struct ShadowHead {
 // Follow these shadow rays of one intersection.
 struct ShadowTask {
   static constexpr bool isFact = false;
+  static constexpr std::uint8_t tag = 10;
   ShadowHead head;
   InlineVector<ShadowTravel, 4> rays;  // at least one
 };
@@ -51,6 +54,7 @@ struct LightAnswer {
 };
 struct LightAnswers {
   static constexpr bool isFact = false;
+  static constexpr std::uint8_t tag = 19;
   RecordId record = 0;
   InlineVector<LightAnswer, 8> colors;
 };
@@ -59,6 +63,7 @@ struct LightAnswers {
 // Colours that were known at once travel with it.
 struct Expect {
   static constexpr bool isFact = false;
+  static constexpr std::uint8_t tag = 11;
   RecordId record = 0;
   ReplyTo to;
   Intersection hit;
@@ -69,12 +74,14 @@ struct Expect {
 // From a pyramid task: it could do with a pyramid.
 struct PyramidWanted {
   static constexpr bool isFact = false;
+  static constexpr std::uint8_t tag = 13;
 };
 
 // Follow the primary rays of these samples: to a pyramid task, the samples of a tile, which make one pyramid; to a
 // voxel-trace task, samples whose rays as a rule begin in its voxels.  Sample i is record firstRecord + i of the host.
 struct PrimaryRays {
   static constexpr bool isFact = false;
+  static constexpr std::uint8_t tag = 14;
   RecordId firstRecord = 0;
   std::vector<SampleId> samples;
 };
@@ -85,6 +92,7 @@ bool samplesFit(const PrimaryRays& message, const PictureSpec& picture);
 // A colour comes home.
 struct Answer {
   static constexpr bool isFact = false;
+  static constexpr std::uint8_t tag = 12;
   RecordId record = 0;
   Slot slot = 0;
   Color color;
@@ -93,6 +101,7 @@ struct Answer {
 // The same for samples, to the host: the colour of record first + i for each i.
 struct SampleColors {
   static constexpr bool isFact = false;
+  static constexpr std::uint8_t tag = 20;
   RecordId first = 0;
   std::vector<Color> colors;
 };
@@ -203,5 +212,8 @@ void serialize(Archive& archive, Answer& m) {
   archive(m.record, m.slot);
   serializeCompact(archive, m.color);
 }
+
+using RayMessages =
+    TypeList<RayTask, ShadowTask, LightAnswers, Expect, PyramidWanted, PrimaryRays, Answer, SampleColors>;
 
 }  // namespace rayshade
