@@ -13,6 +13,7 @@
 #   make bench-embree bin/bench/embree_rate: rays per second beside Embree (Debian: libembree-dev)
 #   make experiments  the schemes of the paper measured over PVM, into docs/experiments/ (7 minutes);
 #                     QUICK=1: small pictures, into BUILD/experiments (2 minutes)
+#   make prove-adding a new primitive in a copy of this tree: what it costs, and what is said when something is forgotten
 #
 # Sources find themselves: a new file needs no edit here.  Every program is linked from one library of the same
 # object files, so every program does the same arithmetic.  Only the PVM programs link libpvm3.
@@ -62,7 +63,7 @@ roles := host voxel-trace pyramid-trace shade
 programs := $(BIN)/rayshade $(BIN)/rayshade-error $(BIN)/spd $(roles:%=$(BIN)/rayshade-%)
 test_programs := $(BIN)/rayshade-tests $(BIN)/link-tests $(BIN)/pvm-tests
 
-.PHONY: all demo docs check check-sanitized test guarded install fuzz fuzzers bench benches bench-embree experiments format clean packages
+.PHONY: all demo docs check check-sanitized test guarded install fuzz fuzzers bench benches bench-embree experiments prove-adding format clean packages
 all: $(programs)
 
 # What runs for long is worth a tenth more.  -Wno-restrict: g++ 12 then sees overlaps in std::string that are not there (its
@@ -153,6 +154,7 @@ install: all
 	  install -d $$HOME/pvm3/bin/LINUX64 && \
 	  for role in $(roles); do ln -sf $(abspath $(PREFIX))/bin/rayshade-$$role $$HOME/pvm3/bin/LINUX64/; done; fi
 
+prove-adding: ; @tests/support/add_primitive
 format:
 	clang-format -i $(shell find rayshade pvm scenes tests -name '*.cc' -o -name '*.h')
 clean:

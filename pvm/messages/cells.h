@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "rayshade/base/type_list.h"
 #include "rayshade/scene/items.h"
 #include "rayshade/space/bintree.h"
 
@@ -10,11 +11,13 @@ namespace rayshade {
 // From a task that traces with fetched cells, to the owner of the cell's voxel: its objects are wanted.
 struct CellWanted {
   static constexpr bool isFact = false;
+  static constexpr std::uint8_t tag = 15;
   CellId cell{};
 };
 // The answer to CellWanted: the objects of the cell.
 struct CellItems {
   static constexpr bool isFact = false;
+  static constexpr std::uint8_t tag = 16;
   CellId cell{};
   std::vector<Item> items;
 };
@@ -42,5 +45,7 @@ template <class Archive>
 void serialize(Archive& archive, CacheCounts& c) {
   archive(c.asked, c.hits, c.fetched, c.fetchedBytes, c.evicted, c.peakBytes);
 }
+
+using CellMessages = TypeList<CellWanted, CellItems>;
 
 }  // namespace rayshade

@@ -44,22 +44,26 @@ Ray primaryRay(const FrameRequest& request, const Exposure& exposure, const Samp
 // Host to voxel-trace tasks: forget all items, another frame begins.
 struct Forget {
   static constexpr bool isFact = true;
+  static constexpr std::uint8_t tag = 0;
 };
 
 // Host to a voxel-trace task: a batch of its share of the model.
 struct Items {
   static constexpr bool isFact = true;
+  static constexpr std::uint8_t tag = 1;
   std::vector<Item> items;
 };
 
 // The answer to Items: one batch was taken in, there may be another.
 struct ItemsTaken {
   static constexpr bool isFact = true;
+  static constexpr std::uint8_t tag = 2;
 };
 
 // Host to all tasks: a new epoch; drop all work, keep the items, answer Ready.
 struct Configure {
   static constexpr bool isFact = true;
+  static constexpr std::uint8_t tag = 3;
   Epoch epoch{};
   SceneSettings settings;
   BinTree tree;
@@ -76,6 +80,7 @@ struct Configure {
 // The answer to Configure: all is built, and the fingerprint of the task's arithmetic.
 struct Ready {
   static constexpr bool isFact = true;
+  static constexpr std::uint8_t tag = 4;
   Epoch epoch{};
   std::uint64_t arithmetic = 0;  // fingerprint: equal on hosts that compute the same bits
   std::uint64_t objects = 0;     // that the task holds
@@ -87,11 +92,13 @@ struct Ready {
 // To the host, a few times a second when shading is placed dynamically: how busy a task is.
 struct Load {
   static constexpr bool isFact = true;
+  static constexpr std::uint8_t tag = 17;
   double busy = 0;  // share of the time since the last one
 };
 // Host to tracing tasks, following from Load: in what proportion shade tasks are chosen.
 struct Weights {
   static constexpr bool isFact = true;
+  static constexpr std::uint8_t tag = 18;
   Epoch epoch{};
   std::vector<std::uint32_t> shadeWeights;
 };
@@ -99,11 +106,13 @@ struct Weights {
 // Host to all tasks: the end; answer Report and leave.
 struct Finish {
   static constexpr bool isFact = true;
+  static constexpr std::uint8_t tag = 5;
 };
 
 // The answer to Finish: what the task counted.
 struct Report {
   static constexpr bool isFact = true;
+  static constexpr std::uint8_t tag = 6;
   TraceCounts counts;
   std::uint64_t combined = 0;  // intersections shaded
   std::uint64_t messagesIn = 0, messagesOut = 0, packetsIn = 0, packetsOut = 0, bytesIn = 0, bytesOut = 0;
@@ -124,10 +133,12 @@ struct Report {
 // Host to a silent task: are you there?
 struct Ping {
   static constexpr bool isFact = true;
+  static constexpr std::uint8_t tag = 7;
 };
 // The answer to Ping.
 struct Pong {
   static constexpr bool isFact = true;
+  static constexpr std::uint8_t tag = 8;
 };
 
 bool isComplete(const Configure& message);
@@ -203,5 +214,8 @@ template <class Archive>
 void serialize(Archive& archive, Weights& m) {
   archive(m.epoch, m.shadeWeights);
 }
+
+using ControlMessages =
+    TypeList<Forget, Items, ItemsTaken, Configure, Ready, Load, Weights, Finish, Report, Ping, Pong>;
 
 }  // namespace rayshade

@@ -1,8 +1,8 @@
 // Packets in: decoding, the check of epochs, and one `on` per message.
 //
 // A task lists what it accepts, `using Accepted = TypeList<...>`, and has a member `on(TaskId from, M&& message)` for each;
-// a message that is listed and not handled does not compile.  What is not listed, malformed or left over at the end of
-// a packet is refused and counted; so is work of another epoch.
+// a message that is listed and not handled does not compile, nor one that is handled and not listed.  What is not
+// listed, malformed or left over at the end of a packet is refused and counted; so is work of another epoch.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -12,8 +12,32 @@ namespace rayshade {
 
 namespace inbox_detail {
 
-template <class M, class List>
-inline constexpr bool kListed = PositionIn<M, List>::value < List::size;
+template <class Task, class M>
+concept Handles = requires(Task& task, TaskId from, M message) {
+  task.on(from, std::move(message));
+};
+
+template <class Task, class M>
+struct AcceptedBy {
+  static_assert(
+      kIsIn<M, AllMessages>,
+      "`Accepted` of this task names what is not in the list of messages: append it to the list at the "
+      "end of the file in pvm/messages where it stands");
+  static_assert(Handles<Task, M>, "`Accepted` of this task names a message for which it has no handler on()");
+};
+template <class Task, class... M>
+constexpr bool checkAccepted(TypeList<M...>) {
+  return ((sizeof(AcceptedBy<Task, M>) > 0) && ...);
+}
+
+// Of a message and all tasks that there are.
+template <class M, class... Task>
+struct ReceivedBy {
+  static_assert((kIsIn<M, typename Task::Accepted> || ...),
+                "no task accepts this message: name it in `Accepted` of the one that receives it");
+  static_assert(((kIsIn<M, typename Task::Accepted> || !Handles<Task, M>)&&...),
+                "a task has a handler on() for this message, but does not name it in its `Accepted`");
+};
 
 // Decodes and delivers one message of type M.  False: the packet is malformed.
 template <class M, class Task>
@@ -22,9 +46,7 @@ bool deliver(Task& task, TaskId from, Epoch epoch, Reader& reader, Traffic& traf
   reader(message);
   if (!reader.ok()) return false;
   ++traffic.messagesIn;
-  if constexpr (kListed<M, typename Task::Accepted>) {
-    static_assert(
-        requires { task.on(from, std::move(message)); }, "an accepted message has no handler");
+  if constexpr (kIsIn<M, typename Task::Accepted>) {
     // Epochs are counted from 1: before the first Configure a task has nothing that it could work with.
     if (!M::isFact && (epoch != task.epoch() || epoch == Epoch{})) {
       ++traffic.stale;
@@ -50,8 +72,17 @@ struct Deliveries {
 
 }  // namespace inbox_detail
 
+// Each message has a task that accepts it, and no handler is in vain.
+template <class... Task>
+constexpr bool receiveAllMessages() {
+  return []<class... M>(TypeList<M...>) {
+    return ((sizeof(inbox_detail::ReceivedBy<M, Task...>) > 0) && ...);
+  }(AllMessages{});
+}
+
 template <class Task>
 void receivePacket(Task& task, TaskId from, std::span<const std::byte> bytes, Traffic& traffic) {
+  static_assert(inbox_detail::checkAccepted<Task>(typename Task::Accepted{}));
   ++traffic.packetsIn;
   traffic.bytesIn += bytes.size();
   Reader reader(bytes);

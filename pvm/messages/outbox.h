@@ -25,8 +25,11 @@ class Outbox {
 
   template <class M>
   void post(TaskId to, const M& message) {
+    static_assert(kIsIn<M, AllMessages>,
+                  "this is not in the list of messages: append it to the list at the end of the file in "
+                  "pvm/messages where it stands");
     Open& open = packetTo(to);
-    Writer{open.bytes}(static_cast<std::uint8_t>(PositionIn<M, AllMessages>::value), message);
+    Writer{open.bytes}(M::tag, message);
     ++traffic.messagesOut;
     if (open.bytes.size() >= kFull) send(open);
   }

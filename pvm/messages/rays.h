@@ -3,6 +3,7 @@
 #pragma once
 
 #include "pvm/messages/addresses.h"
+#include "rayshade/base/type_list.h"
 #include "rayshade/sampling/sampler.h"
 #include "rayshade/shading/combine.h"
 #include "rayshade/shading/shadow.h"
@@ -12,6 +13,7 @@ namespace rayshade {
 // To a voxel-trace task: follow this ray from position `step` of its walk.
 struct RayTask {
   static constexpr bool isFact = false;
+  static constexpr std::uint8_t tag = 9;
   Ray ray;
   std::uint32_t step = 0;
   ReplyTo to;
@@ -39,6 +41,7 @@ struct ShadowHead {
 // To a voxel-trace task: follow these shadow rays of one intersection.
 struct ShadowTask {
   static constexpr bool isFact = false;
+  static constexpr std::uint8_t tag = 10;
   ShadowHead head;
   InlineVector<ShadowTravel, 4> rays;  // at least one
 };
@@ -53,6 +56,7 @@ struct LightAnswer {
 // To a shade task: light that arrives at one intersection, or that does not.
 struct LightAnswers {
   static constexpr bool isFact = false;
+  static constexpr std::uint8_t tag = 19;
   RecordId record = 0;
   InlineVector<LightAnswer, 8> colors;
 };
@@ -61,6 +65,7 @@ struct LightAnswers {
 // Colours that were known at once travel with it.
 struct Expect {
   static constexpr bool isFact = false;
+  static constexpr std::uint8_t tag = 11;
   RecordId record = 0;
   ReplyTo to;
   Intersection hit;
@@ -71,6 +76,7 @@ struct Expect {
 // From a pyramid-trace task to the host: it has room for a pyramid.
 struct PyramidWanted {
   static constexpr bool isFact = false;
+  static constexpr std::uint8_t tag = 13;
 };
 
 // Host to a tracing task: follow the primary rays of these samples.  To a pyramid-trace task, the samples of a tile, which
@@ -78,6 +84,7 @@ struct PyramidWanted {
 // firstRecord + i of the host.
 struct PrimaryRays {
   static constexpr bool isFact = false;
+  static constexpr std::uint8_t tag = 14;
   RecordId firstRecord = 0;
   std::vector<SampleId> samples;
 };
@@ -88,6 +95,7 @@ bool samplesFit(const PrimaryRays& message, const PictureSpec& picture);
 // To a shade task or the host: the colour of a ray comes home.
 struct Answer {
   static constexpr bool isFact = false;
+  static constexpr std::uint8_t tag = 12;
   RecordId record = 0;
   Slot slot = 0;
   Color color;
@@ -96,6 +104,7 @@ struct Answer {
 // To the host: the colours of samples, of record first + i for each i.
 struct SampleColors {
   static constexpr bool isFact = false;
+  static constexpr std::uint8_t tag = 20;
   RecordId first = 0;
   std::vector<Color> colors;
 };
@@ -206,5 +215,8 @@ void serialize(Archive& archive, Answer& m) {
   archive(m.record, m.slot);
   serializeCompact(archive, m.color);
 }
+
+using RayMessages =
+    TypeList<RayTask, ShadowTask, LightAnswers, Expect, PyramidWanted, PrimaryRays, Answer, SampleColors>;
 
 }  // namespace rayshade

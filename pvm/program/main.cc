@@ -10,6 +10,7 @@
 #include <exception>
 #include <string_view>
 
+#include "pvm/host/host_task.h"
 #include "pvm/link/pvm_link.h"
 #include "pvm/messages/event_loop.h"
 #include "pvm/program/host_program.h"
@@ -20,6 +21,8 @@
 namespace {
 
 using namespace rayshade;
+
+static_assert(receiveAllMessages<HostTask, VoxelTask, PyramidTask, ShadeTask>());
 
 template <class Task>
 int runSlave() {

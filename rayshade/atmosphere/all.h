@@ -12,4 +12,7 @@ namespace rayshade {
 using AllEffects = TypeList<Fog, Mist, FogDeck>;
 using AnyEffect = AllEffects::Variant;
 
+// The compiler names what is missing; what an effect must have is said at the head of effect.h.
+static_assert((AllEffects::forEach([]<Effect E>() {}), true));
+
 }  // namespace rayshade

@@ -1,12 +1,15 @@
 // What an atmospheric effect is: it changes the colour that a ray brings, outside of all media.
 //
 //   keyword    the word after `atmosphere`
+//   examples   what may follow it: tests and documents read them
 //   parse      reads its own arguments
 //   apply      the colour seen along a ray that was hit at `end`, `distance` away (infinite: nothing was hit)
+//   serialize  its fields, for the wire
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <cmath>
+#include <concepts>
 #include <optional>
 #include <string_view>
 
@@ -21,6 +24,15 @@ namespace rayshade {
 struct AirPath {
   Vec3 start, end;
   double distance = 0;  // at most kFarAway
+};
+
+template <class E>
+concept Effect = Serializable<E> &&
+    requires(const E effect, Color seen, const AirPath& path, Arguments& arguments) {
+  { E::keyword } -> std::convertible_to<std::string_view>;
+  { E::parse(arguments) } -> std::same_as<std::optional<E>>;
+  { effect.apply(seen, path) } -> std::same_as<Color>;
+  E::examples[0];
 };
 
 // What rayshade takes as the distance of a miss.

@@ -234,6 +234,13 @@ class Reader {
   bool ok_ = true;
 };
 
+// Has a serialize() for both directions.
+template <class T>
+concept Serializable = requires(Writer& writer, Reader& reader, T& value) {
+  serialize(writer, value);
+  serialize(reader, value);
+};
+
 // A field and the value that it usually has.
 template <class T>
 struct Usual {

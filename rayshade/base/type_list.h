@@ -9,6 +9,7 @@
 
 #include <cstddef>
 #include <tuple>
+#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -40,5 +41,8 @@ struct PositionIn<Wanted, TypeList<T...>> {
     return position;
   }();
 };
+
+template <class Wanted, class List>
+inline constexpr bool kIsIn = PositionIn<Wanted, List>::value < List::size;
 
 }  // namespace rayshade

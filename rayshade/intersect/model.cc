@@ -2,6 +2,7 @@
 #include "rayshade/intersect/model.h"
 
 #include <algorithm>
+#include <array>
 
 #include "rayshade/intersect/csg.h"
 #include "rayshade/intersect/ray_hit.h"
@@ -13,13 +14,33 @@ Bounds shapeBounds(const SceneStore& store, const PlacedObject& object) {
   return withShape(store, object, [](const auto& shape) { return shape.bounds(); });
 }
 
+// What goes first of two hits at the same t, by BodyKind; instances and CSG nodes are solids.
+enum class Turn : std::uint8_t { flat, unbounded, solid };
+constexpr auto kTurns = [] {
+  std::array<Turn, AllShapes::size + 2> turns;
+  turns.fill(Turn::solid);
+  std::size_t kind = 0;
+  AllShapes::forEach([&]<class S>() {
+    static_assert(!(S::flat && S::unbounded), "a shape is flat or unbounded: see precedence()");
+    turns[kind++] = S::flat ? Turn::flat : S::unbounded ? Turn::unbounded : Turn::solid;
+  });
+  return turns;
+}();
+static_assert(static_cast<std::size_t>(kInstanceKind) < kTurns.size() &&
+              static_cast<std::size_t>(kCsgKind) < kTurns.size());
+
 }  // namespace
 
 std::uint64_t precedence(const PlacedObject& object) {
   const std::uint64_t id = number(object.id);
-  if (isFlat(object.kind)) return id;
-  if (isUnbounded(object.kind)) return 1ull << 32 | id;
-  return 2ull << 32 | (0xffffffffull - id);
+  switch (kTurns[static_cast<std::size_t>(object.kind)]) {
+    case Turn::flat:
+      return id;
+    case Turn::unbounded:
+      return 1ull << 32 | id;
+    default:
+      return 2ull << 32 | (0xffffffffull - id);
+  }
 }
 
 Bounds Model::boundsOf(ObjectIndex index) const {

@@ -17,21 +17,7 @@ double intersectShape(const S& shape, const LocalRay& ray, double tMin) {
   return local / ray.scale;
 }
 
-// Does the type at a position of AllShapes have one of these keywords?
-constexpr bool keywordIs(BodyKind kind, std::initializer_list<std::string_view> words) {
-  bool found = false;
-  std::size_t position = 0;
-  AllShapes::forEach([&]<class S>() {
-    if (position++ != static_cast<std::size_t>(kind)) return;
-    for (std::string_view word : words) found = found || S::keyword == word;
-  });
-  return found;
-}
-
 }  // namespace
-
-bool isFlat(BodyKind kind) { return keywordIs(kind, {"disc", "polygon", "triangle", "triangleuv"}); }
-bool isUnbounded(BodyKind kind) { return keywordIs(kind, {"plane"}); }
 
 const LocalRay& RayIntersector::rayIn(NodeIndex node) {
   if (node != lastNode_) {

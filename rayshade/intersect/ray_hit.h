@@ -21,10 +21,6 @@ auto withShape(const SceneStore& store, const PlacedObject& object, F&& f) {
   }(AllShapes{});
 }
 
-// Flat shapes replace a hit at the same distance in rayshade; unbounded ones are tested first.
-bool isFlat(BodyKind kind);
-bool isUnbounded(BodyKind kind);
-
 // The position of a shape in AllShapes.
 template <class S>
 inline constexpr BodyKind kKindOf = [] {

@@ -93,15 +93,8 @@ constexpr std::pair<std::string_view, Word> kWords[] = {
     {"verbose", Word::reserved},
 };
 
-template <class List>
-struct KeywordsOf;
-template <class... T>
-struct KeywordsOf<TypeList<T...>> {
-  static constexpr std::array<std::string_view, sizeof...(T)> texts{T::keyword...};
-};
-
-constexpr std::size_t kSlots = 512;  // a power of two, sparsely filled
-constexpr std::size_t kLongestWord = 16;
+constexpr std::size_t kSlots = 512;       // a power of two, sparsely filled
+constexpr std::size_t kLongestWord = 16;  // letters: longer ones are not looked for
 
 constexpr std::size_t slotOf(std::string_view text) {
   std::uint32_t hash = 2166136261u;  // FNV-1a
@@ -109,46 +102,115 @@ constexpr std::size_t slotOf(std::string_view text) {
   return (hash ^ hash >> 15) % kSlots;
 }
 
+// Calls use(word) for each word that the language knows a member of a list by.
+template <class T, class Use>
+constexpr void forEachWord(Use use) {
+  if constexpr (!requires { typename T::SharesKeywordOf; }) use(std::string_view(T::keyword));
+  if constexpr (requires { T::aliases; })
+    for (const std::string_view alias : T::aliases) use(alias);
+}
+
+// Calls use(word, keyword) for each word of all members of a list.
+template <class List, class Use>
+constexpr void forEachWordOf(Word kind, Use use) {
+  static_assert(List::size <= 256, "Keyword::index is a byte");
+  std::size_t position = 0;
+  List::forEach([&]<class T>() {
+    forEachWord<T>([&](std::string_view word) {
+      use(word, Keyword{kind, static_cast<std::uint8_t>(position)});
+    });
+    ++position;
+  });
+}
+
+template <class Use>
+constexpr void forEachWordOfTheLanguage(Use use) {
+  for (const auto& [text, word] : kWords) use(text, Keyword{word, 0});
+  forEachWordOf<AllShapes>(Word::shape, use);
+  forEachWordOf<AllTextures>(Word::texture, use);
+  forEachWordOf<AllLights>(Word::light, use);
+  forEachWordOf<AllEffects>(Word::effect, use);
+}
+
+// ---- what a word must be
+
+constexpr bool isReadAsOneWord(std::string_view text) {
+  for (const char c : text)
+    if (!(c >= 'a' && c <= 'z') && !(c >= '0' && c <= '9')) return false;
+  return !text.empty() && text[0] >= 'a';
+}
+constexpr bool isTaken(std::string_view text) {  // by more than the one who asks
+  int times = 0;
+  forEachWordOfTheLanguage([&](std::string_view other, Keyword) { times += other == text ? 1 : 0; });
+  return times > 1;
+}
+constexpr bool isShort(std::string_view text) { return text.size() <= kLongestWord; }
+
+template <class T>
+constexpr bool allWords(bool (*holds)(std::string_view)) {
+  bool all = true;
+  forEachWord<T>([&](std::string_view word) { all = all && holds(word); });
+  return all;
+}
+
+// The compiler says in which type the word stands: "In instantiation of ... CheckedWords<Sphere>".
+template <class T>
+struct CheckedWords {
+  static_assert(
+      allWords<T>(isShort),
+      "a keyword or alias of this type has more than kLongestWord letters and would never be found: "
+      "choose a shorter one in the file of the type, or raise kLongestWord in "
+      "rayshade/language/keywords.cc");
+  static_assert(allWords<T>(isReadAsOneWord),
+                "a keyword or alias of this type is no word of small letters and digits and would never be "
+                "found: change it in the file of the type");
+  static_assert(
+      allWords<T>([](std::string_view word) { return !isTaken(word); }),
+      "a keyword or alias of this type is taken by another shape, texture, light or effect, or by the "
+      "language (kWords in rayshade/language/keywords.cc): choose another in the file of the type");
+};
+template <class... T>
+constexpr bool checkWordsOf(TypeList<T...>) {
+  return ((sizeof(CheckedWords<T>) > 0) && ...);
+}
+static_assert(checkWordsOf(AllShapes{}) && checkWordsOf(AllTextures{}) && checkWordsOf(AllLights{}) &&
+              checkWordsOf(AllEffects{}));
+static_assert(
+    [] {
+      for (const auto& [text, word] : kWords)
+        if (!isShort(text) || isTaken(text)) return false;
+      return true;
+    }(),
+    "a word of kWords is taken, or has more than kLongestWord letters");
+
+// ---- the table
+
 // A hash table with linear probing, filled by the compiler.
 struct Table {
   std::array<Entry, kSlots> slots{};
+  std::size_t used = 0;
 
-  constexpr const Entry& find(std::string_view text) const {
+  constexpr std::size_t find(std::string_view text) const {  // its slot, or the free one where it would stand
     std::size_t at = slotOf(text);
     while (!slots[at].text.empty() && slots[at].text != text) at = (at + 1) % kSlots;
-    return slots[at];
+    return at;
   }
-  constexpr void add(std::string_view text, Keyword keyword) {  // the first entry of a word stays
-    std::size_t at = slotOf(text);
-    while (!slots[at].text.empty() && slots[at].text != text) at = (at + 1) % kSlots;
-    if (slots[at].text.empty()) slots[at] = {text, keyword};
-  }
-  template <class List>
-  constexpr void addList(Word word) {
-    for (std::size_t i = 0; i < List::size; ++i)
-      add(KeywordsOf<List>::texts[i], {word, static_cast<std::uint8_t>(i)});
+  constexpr Table() {
+    forEachWordOfTheLanguage([this](std::string_view text, Keyword keyword) {
+      slots[find(text)] = {text, keyword};
+      ++used;
+    });
   }
 };
 
-constexpr Table makeTable() {
-  Table table;
-  for (const auto& [text, word] : kWords) table.add(text, {word, 0});
-  table.addList<AllShapes>(Word::shape);
-  table.addList<AllTextures>(Word::texture);
-  table.addList<AllLights>(Word::light);
-  table.addList<AllEffects>(Word::effect);
-  const Entry polygon = table.find("polygon");
-  if (!polygon.text.empty()) table.add("poly", polygon.keyword);
-  return table;
-}
-
-constexpr Table kTable = makeTable();
+constexpr Table kTable;
+static_assert(kTable.used <= kSlots / 2, "raise kSlots: looking for names takes long in a full table");
 
 }  // namespace
 
 Keyword findKeyword(std::string_view text) {
   if (text.size() > kLongestWord) return {};
-  return kTable.find(text).keyword;
+  return kTable.slots[kTable.find(text)].keyword;
 }
 
 }  // namespace rayshade

@@ -14,6 +14,9 @@ namespace rayshade {
 using AllLights = TypeList<PointLight, DirectionalLight, ExtendedLight, AreaLight, SpotLight>;
 using AnyLight = AllLights::Variant;
 
+// The compiler names what is missing; what a light must have is said at the head of light.h.
+static_assert((AllLights::forEach([]<Light L>() {}), true));
+
 // A light of the scene.
 struct LightSource {
   AnyLight kind;

@@ -42,7 +42,7 @@ struct LightQuery {
 };
 
 template <class L>
-concept Light = requires(const L light, const LightQuery& query, Arguments& arguments) {
+concept Light = Serializable<L> && requires(const L light, const LightQuery& query, Arguments& arguments) {
   { L::keyword } -> std::convertible_to<std::string_view>;
   { L::parse(arguments) } -> std::same_as<std::optional<L>>;
   { light.points() } -> std::same_as<int>;

@@ -4,24 +4,6 @@
 #include <numeric>
 
 namespace rayshade {
-namespace {
-
-// The surfaces that textures bring along.
-template <class T>
-const Surface* surfaceOf(const T&) {
-  return nullptr;
-}
-const Surface* surfaceOf(const Checker& t) { return &t.odd; }
-const Surface* surfaceOf(const Blotch& t) { return &t.other; }
-const Surface* surfaceOf(const Stripe& t) { return &t.between; }
-const Surface* surfaceOf(const ImageTexture& t) { return t.base ? &*t.base : nullptr; }
-
-// Textures that make a surface transparent themselves.
-template <class T>
-constexpr bool kMakesTransparent = std::is_same_v<T, Cloud> || std::is_same_v<T, Sky>;
-
-}  // namespace
-
 std::uint64_t SceneFeatures::shapeCount() const {
   return std::accumulate(shapes.begin(), shapes.end(), std::uint64_t{0});
 }
@@ -49,8 +31,8 @@ void FeatureSink::count(const SceneNode& node) {
     std::visit(
         [this]<class T>(const T& texture) {
           features_.coordinateTextures += T::needs == TextureNeeds::coordinates ? 1 : 0;
-          features_.transparent += kMakesTransparent<T> ? 1 : 0;
-          if (const Surface* brought = surfaceOf(texture)) count(*brought);
+          features_.transparent += T::makesTransparent ? 1 : 0;
+          if (const Surface* brought = texture.otherSurface()) count(*brought);
         },
         placed.texture);
   }

@@ -22,4 +22,7 @@ using AllShapes = TypeList<Sphere, Box, Plane, Disc, Cylinder, Cone, Triangle, T
                            PhongTriangle, Torus, Blob, HeightField>;
 using AnyShape = AllShapes::Variant;
 
+// The compiler names what is missing; what a shape must have is said at the head of shape.h.
+static_assert((AllShapes::forEach([]<Shape S>() {}), true));
+
 }  // namespace rayshade

@@ -30,7 +30,8 @@ struct Blob {
   std::vector<Metaball> balls;
 
   static constexpr std::string_view keyword = "blob";
-  static constexpr bool closed = true;
+  static constexpr Aliases<> aliases{};
+  static constexpr bool flat = false, unbounded = false;
   static constexpr std::string_view examples[] = {"0.5  1 1  0 0 0", "0.45  1 0.9 -0.5 0 0  1 0.9 0.4 0 0",
                                                   "0.3  1 0.8 0 0 0  1 0.8 0.5 0 0.1  0.8 0.6 0.2 0.5 1e-3"};
 

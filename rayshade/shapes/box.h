@@ -18,7 +18,8 @@ struct Box {
   Vec3 low{0, 0, 0}, high{1, 1, 1};
 
   static constexpr std::string_view keyword = "box";
-  static constexpr bool closed = true;
+  static constexpr Aliases<> aliases{};
+  static constexpr bool flat = false, unbounded = false;
   static constexpr std::string_view examples[] = {"-1 -1 -1  1 1 1", "3 2 1  0 -1e-4 0"};
 
   static std::optional<Box> parse(Arguments& in) {

@@ -36,7 +36,8 @@ struct HeightField {
   std::shared_ptr<const Heights> heights;  // none: an empty field
 
   static constexpr std::string_view keyword = "heightfield";
-  static constexpr bool closed = false;
+  static constexpr Aliases<> aliases{};
+  static constexpr bool flat = false, unbounded = false;
   static constexpr std::string_view examples[] = {"tests/support/hills.hf"};
 
   static std::optional<HeightField> parse(Arguments& in);

@@ -30,7 +30,8 @@ struct Plane {
   Vec3 normal{0, 0, 1};  // unit
 
   static constexpr std::string_view keyword = "plane";
-  static constexpr bool closed = false;
+  static constexpr Aliases<> aliases{};
+  static constexpr bool flat = false, unbounded = true;
   static constexpr std::string_view examples[] = {"0 0 0  0 0 1", "1 -2 3e4  1 2 -0.5"};
 
   static std::optional<Plane> parse(Arguments& in) {

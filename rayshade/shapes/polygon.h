@@ -29,7 +29,8 @@ struct Polygon {
   std::shared_ptr<const Outline> outline = nullptr;  // of polygons with many corners
 
   static constexpr std::string_view keyword = "polygon";
-  static constexpr bool closed = false;
+  static constexpr Aliases<1> aliases{"poly"};
+  static constexpr bool flat = true, unbounded = false;
   static constexpr std::string_view examples[] = {"0 0 0  1 0 0  0 1 0", "0 0 1  4 0 1  4 4 1  2 1 1  0 4 1"};
 
   static std::optional<Polygon> parse(Arguments& in);

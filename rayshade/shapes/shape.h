@@ -2,29 +2,38 @@
 //
 // A shape is plain data in its own (object) space plus a few pure functions; nothing in it is written after
 // the scene was read, so asking twice, or asking another shape in between, changes nothing.  To add one: a
-// file with the struct, one line in all.h.
+// file with the struct, its include and its name in all.h, an example in docs/language.md.  The compiler and the
+// tests say what is missing.
 //
 //   keyword      the word of the language that makes one
-//   closed       may be an operand of CSG without advice
-//   examples     what may follow the keyword (after the optional surface): tests and documents read them
+//   aliases      other words for the same
+//   flat         of two hits at the same t, one of a flat shape is taken, the first one defined
+//   unbounded    at the same t, after flat ones, before all others, the first one defined
+//   examples     what may follow the keyword (after the optional surface).  Tests render them, change their numbers
+//                at random, and ask of what comes out all that is said here
 //   parse        reads the arguments; nothing when the shape is degenerate (the parser warns and drops it)
 //   bounds       object space, not padded
-//   intersect    the smallest t > tMin at which the ray meets the shape, or kNoHit.  t is measured along the
-//   unit
-//                direction of the local ray.  All roots of one ray are the same numbers whatever tMin, so
+//   intersect    the smallest t > tMin at which the ray meets the shape, or kNoHit; t along the unit direction
+//                of the local ray.  All roots of one ray are the same numbers whatever tMin, so
 //                intersect(ray, intersect(ray, t)) walks through them.  Exact tangency is a hit; a ray that
 //                lies in a plane misses it.  No absolute epsilon.
 //   pointAt      what is at t, a root that intersect returned for that ray
 //   coordinates  u, v and the tangents at a point of the shape's space, for textures.  `at` is the hit;
-//   `position`
-//                may differ from at.position (texture mapping may move it)
+//                `position` may differ from at.position (texture mapping may move it)
 //   serialize    its fields, for the wire
+//
+// If it has them:
+//
+//   flipped          the same with its normals turned around, for option -f
+//   SharesKeywordOf  a shape whose keyword this one has, too: the parser (parseShape) tells them apart
 //
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <concepts>
 #include <optional>
+#include <span>
 #include <string_view>
 
 #include "rayshade/base/archive.h"
@@ -54,11 +63,16 @@ struct SurfaceCoordinates {
 // Relative rounding error of a few operations in a row (Higham's gamma), with room to spare.
 inline constexpr double kRounding = 16 * 0x1p-53;
 
+template <std::size_t N = 0>
+using Aliases = std::array<std::string_view, N>;
+
 template <class S>
-concept Shape = requires(const S shape, const LocalRay ray, double t, const ShapePoint at,
-                         Arguments& arguments) {
+concept Shape = Serializable<S> &&
+    requires(const S shape, const LocalRay ray, double t, const ShapePoint at, Arguments& arguments) {
   { S::keyword } -> std::convertible_to<std::string_view>;
-  { S::closed } -> std::convertible_to<bool>;
+  { S::aliases } -> std::convertible_to<std::span<const std::string_view>>;
+  { S::flat } -> std::convertible_to<bool>;
+  { S::unbounded } -> std::convertible_to<bool>;
   { S::parse(arguments) } -> std::same_as<std::optional<S>>;
   { shape.bounds() } -> std::same_as<Bounds>;
   { shape.intersect(ray, t) } -> std::same_as<double>;

@@ -21,7 +21,8 @@ struct Sphere {
   double radius = 1;
 
   static constexpr std::string_view keyword = "sphere";
-  static constexpr bool closed = true;
+  static constexpr Aliases<> aliases{};
+  static constexpr bool flat = false, unbounded = false;
   static constexpr std::string_view examples[] = {"1  0 0 0", "0.001  -5 1e3 7"};
 
   static std::optional<Sphere> parse(Arguments& in) {

@@ -25,7 +25,8 @@ struct Torus {
   Vec3 axis{0, 0, 1};  // of any length but zero
 
   static constexpr std::string_view keyword = "torus";
-  static constexpr bool closed = true;
+  static constexpr Aliases<> aliases{};
+  static constexpr bool flat = false, unbounded = false;
   static constexpr std::string_view examples[] = {"1 0.25  0 0 0  0 0 1", "0.5 0.001  7 -5 1e3  1 -2 0.4",
                                                   "0.6 1  0 1 0  0 0 -3"};
 

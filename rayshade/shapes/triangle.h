@@ -61,7 +61,8 @@ struct Triangle {
   std::array<Vec3, 3> corners{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}};
 
   static constexpr std::string_view keyword = "triangle";
-  static constexpr bool closed = false;
+  static constexpr Aliases<> aliases{};
+  static constexpr bool flat = true, unbounded = false;
   static constexpr std::string_view examples[] = {"0 0 0  1 0 0  0 1 0", "3 -4 5  1e3 0 0.5  2 2 -7"};
 
   static std::optional<Triangle> parse(Arguments& in);  // flat
@@ -98,8 +99,10 @@ struct PhongTriangle {
   Triangle face;
   std::array<Vec3, 3> normals{{{0, 0, 1}, {0, 0, 1}, {0, 0, 1}}};  // at the corners, of any length
 
-  static constexpr std::string_view keyword = "triangle";
-  static constexpr bool closed = false;
+  using SharesKeywordOf = Triangle;
+  static constexpr std::string_view keyword = Triangle::keyword;
+  static constexpr Aliases<> aliases{};
+  static constexpr bool flat = true, unbounded = false;
   static constexpr std::string_view examples[] = {"0 0 0  0 0 1  1 0 0  1 0 1  0 1 0  0 1 1",
                                                   "3 -4 5  0 1 0  1e3 0 0.5  -1 1 0  2 2 -7  0 0 2"};
 

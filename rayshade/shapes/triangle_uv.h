@@ -19,7 +19,8 @@ struct TriangleUv {
   std::array<Uv, 3> uv{{{0, 0}, {1, 0}, {0, 1}}};
 
   static constexpr std::string_view keyword = "triangleuv";
-  static constexpr bool closed = false;
+  static constexpr Aliases<> aliases{};
+  static constexpr bool flat = true, unbounded = false;
   static constexpr std::string_view examples[] = {
       "0 0 0  0 0 1  0 0   1 0 0  1 0 1  1 0   0 1 0  0 1 1  0 1",
       "3 -4 5  0 1 0  0.5 0.5   1e3 0 0.5  -1 1 0  2 -1   2 2 -7  0 0 2  0.25 8"};

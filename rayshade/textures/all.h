@@ -24,4 +24,7 @@ using AllTextures = TypeList<Checker, Blotch, Bump, Cloud, Fbm, FbmBump, Gloss, 
                              Sky, Stripe, Windy, Wood>;
 using AnyTexture = AllTextures::Variant;
 
+// The compiler names what is missing; what a texture must have is said at the head of texture.h.
+static_assert((AllTextures::forEach([]<Texture T>() {}), true));
+
 }  // namespace rayshade

@@ -16,6 +16,7 @@ struct Blotch {
 
   static constexpr std::string_view keyword = "blotch";
   static constexpr TextureNeeds needs = TextureNeeds::position;
+  static constexpr bool makesTransparent = false;
   static constexpr std::string_view examples[] = {"0.1 diffuse 0.7 0.1 0.1"};
 
   static std::optional<Blotch> parse(Arguments& in) {
@@ -23,6 +24,7 @@ struct Blotch {
     return Blotch{mix, in.surface()};
   }
 
+  const Surface* otherSurface() const { return &other; }
   void apply(TextureHit& hit) const {
     const double n = noise(hit.position);
     if (!(n > mix)) return;

@@ -15,10 +15,12 @@ struct Bump {
 
   static constexpr std::string_view keyword = "bump";
   static constexpr TextureNeeds needs = TextureNeeds::position;
+  static constexpr bool makesTransparent = false;
   static constexpr std::string_view examples[] = {"0.6"};
 
   static std::optional<Bump> parse(Arguments& in) { return Bump{in.number()}; }
 
+  const Surface* otherSurface() const { return nullptr; }
   void apply(TextureHit& hit) const { hit.normal = bend(hit.normal, size * vectorNoise(hit.position)); }
 };
 

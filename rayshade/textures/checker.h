@@ -17,10 +17,12 @@ struct Checker {
 
   static constexpr std::string_view keyword = "checker";
   static constexpr TextureNeeds needs = TextureNeeds::position;
+  static constexpr bool makesTransparent = false;
   static constexpr std::string_view examples[] = {"diffuse 0.1 0.1 0.1"};
 
   static std::optional<Checker> parse(Arguments& in) { return Checker{in.surface()}; }
 
+  const Surface* otherSurface() const { return &odd; }
   void apply(TextureHit& hit) const {
     // The parity of a cell's number, also where it does not fit an integer.
     auto parity = [](double c) { return std::fmod(std::trunc(c > 0 ? c : 1 - c), 2) != 0; };

@@ -23,6 +23,7 @@ struct Cloud {
 
   static constexpr std::string_view keyword = "cloud";
   static constexpr TextureNeeds needs = TextureNeeds::ray;
+  static constexpr bool makesTransparent = true;
   static constexpr std::string_view examples[] = {"0.7 0.5 2 6 0.35 0.75 0.3"};
 
   static std::optional<Cloud> parse(Arguments& in) {
@@ -35,6 +36,7 @@ struct Cloud {
     return cloud;
   }
 
+  const Surface* otherSurface() const { return nullptr; }
   void apply(TextureHit& hit) const {
     const double squaredDistance = dot(hit.rayOrigin, hit.rayOrigin);
     if (squaredDistance < 1 + kNegligible) {  // seen from inside: nothing

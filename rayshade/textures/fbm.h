@@ -22,6 +22,7 @@ struct Fbm {
 
   static constexpr std::string_view keyword = "fbm";
   static constexpr TextureNeeds needs = TextureNeeds::position;
+  static constexpr bool makesTransparent = false;
   static constexpr std::string_view examples[] = {"0.25 1.2 0.5 2 5 -0.4"};
 
   static std::optional<Fbm> parse(Arguments& in) {
@@ -34,6 +35,7 @@ struct Fbm {
     return fbm;
   }
 
+  const Surface* otherSurface() const { return nullptr; }
   void apply(TextureHit& hit) const {
     const double f = fractionalMotion(hit.position, spectrum);
     const double value = f < threshold ? offset : offset + scale * (f - threshold);

@@ -19,6 +19,7 @@ struct FbmBump {
 
   static constexpr std::string_view keyword = "fbmbump";
   static constexpr TextureNeeds needs = TextureNeeds::position;
+  static constexpr bool makesTransparent = false;
   static constexpr std::string_view examples[] = {"0 0.7 0.5 2 5"};
 
   static std::optional<FbmBump> parse(Arguments& in) {
@@ -29,6 +30,7 @@ struct FbmBump {
     return bump;
   }
 
+  const Surface* otherSurface() const { return nullptr; }
   void apply(TextureHit& hit) const {
     const Vec3 bumped =
         hit.normal + Vec3{offset, offset, offset} + scale * vectorFractionalMotion(hit.position, spectrum);

@@ -17,10 +17,12 @@ struct Gloss {
 
   static constexpr std::string_view keyword = "gloss";
   static constexpr TextureNeeds needs = TextureNeeds::position;
+  static constexpr bool makesTransparent = false;
   static constexpr std::string_view examples[] = {"0.95"};
 
   static std::optional<Gloss> parse(Arguments& in) { return Gloss{in.number()}; }
 
+  const Surface* otherSurface() const { return nullptr; }
   void apply(TextureHit& hit) const {
     const int column = hit.sample % hit.side, row = hit.sample / hit.side % hit.side;
     // In the sample's part of [-1, 1).

@@ -43,10 +43,12 @@ struct ImageTexture {
 
   static constexpr std::string_view keyword = "image";
   static constexpr TextureNeeds needs = TextureNeeds::coordinates;
+  static constexpr bool makesTransparent = false;
   static constexpr std::string_view examples[] = {
       "picture.png", "picture.png smooth tile 2 -1 component body range 1 .1 map planar 0 0 0  0 0 1  1 0 0"};
 
   static std::optional<ImageTexture> parse(Arguments& in);
+  const Surface* otherSurface() const { return base ? &*base : nullptr; }
   void apply(TextureHit& hit) const;
 };
 

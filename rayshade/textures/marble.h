@@ -19,6 +19,7 @@ struct Marble {
 
   static constexpr std::string_view keyword = "marble";
   static constexpr TextureNeeds needs = TextureNeeds::position;
+  static constexpr bool makesTransparent = false;
   static constexpr std::string_view examples[] = {""};
 
   static std::optional<Marble> parse(Arguments& in) {
@@ -27,6 +28,7 @@ struct Marble {
     return marble;
   }
 
+  const Surface* otherSurface() const { return nullptr; }
   void apply(TextureHit& hit) const {
     const double wave = std::sin(8 * chaos(hit.position, 6) + 7 * hit.position.z);
     const double value = std::pow(0.5 * (wave + 1), 0.77);

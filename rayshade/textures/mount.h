@@ -20,6 +20,7 @@ struct Mount {
 
   static constexpr std::string_view keyword = "mount";
   static constexpr TextureNeeds needs = TextureNeeds::position;
+  static constexpr bool makesTransparent = false;
   static constexpr std::string_view examples[] = {"colors.map 0.5 0.4"};
 
   static std::optional<Mount> parse(Arguments& in) {
@@ -30,6 +31,7 @@ struct Mount {
     return mount;
   }
 
+  const Surface* otherSurface() const { return nullptr; }
   void apply(TextureHit& hit) const {
     const double height = hit.position.z + turbulence * chaos(hit.position, 7) - slope * (1 - hit.normal.z);
     const Color color = colormap.at(256 * height);

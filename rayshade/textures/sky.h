@@ -21,6 +21,7 @@ struct Sky {
 
   static constexpr std::string_view keyword = "sky";
   static constexpr TextureNeeds needs = TextureNeeds::position;
+  static constexpr bool makesTransparent = true;
   static constexpr std::string_view examples[] = {"2 0.5 2 4 0.8 0.3"};
 
   static std::optional<Sky> parse(Arguments& in) {
@@ -32,6 +33,7 @@ struct Sky {
     return sky;
   }
 
+  const Surface* otherSurface() const { return nullptr; }
   void apply(TextureHit& hit) const {
     const double f = fractionalMotion(hit.position, spectrum);
     const double share = 0.5 + 0.5 * f * (1 - spectrum.omega);  // f is at most about 1 / (1 - omega)

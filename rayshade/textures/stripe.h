@@ -20,6 +20,7 @@ struct Stripe {
 
   static constexpr std::string_view keyword = "stripe";
   static constexpr TextureNeeds needs = TextureNeeds::coordinates;
+  static constexpr bool makesTransparent = false;
   static constexpr std::string_view examples[] = {
       "diffuse 0.7 0.3 0.3 0.1 0.7", "diffuse 0.7 0.3 0.3 0.15 0 map planar 0 0 0  0 0 1  1 0.5 0"};
 
@@ -32,6 +33,7 @@ struct Stripe {
     return stripe;
   }
 
+  const Surface* otherSurface() const { return &between; }
   void apply(TextureHit& hit) const {
     const double u = hit.u - std::floor(hit.u), v = hit.v - std::floor(hit.v);
     if (u < width || v < width) {

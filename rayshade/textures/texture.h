@@ -3,12 +3,14 @@
 // A texture changes the surface or the normal of one hit.  It is plain data with one pure function; it knows
 // nothing of shapes: where the hit lies comes as values.
 //
-//   keyword    the word after `texture`
-//   needs      which fields of the hit it reads; the others are not computed for it
-//   examples   what may follow the keyword: tests and documents read them
-//   parse      reads its own arguments (not the transforms behind them)
-//   apply      changes `hit`
-//   serialize  its fields, for the wire
+//   keyword           the word after `texture`
+//   needs             which fields of the hit it reads; the others are not computed for it
+//   makesTransparent  it may let rays through where the surface does not: plans count on it
+//   examples          what may follow the keyword: tests and documents read them
+//   parse             reads its own arguments (not the transforms behind them)
+//   otherSurface      the surface that it may put in the place of the object's, or null: plans count on it
+//   apply             changes `hit`
+//   serialize         its fields, for the wire
 //
 // applyTexture() in textures/apply.h calls a texture with the fields that it needs.
 //
@@ -51,10 +53,12 @@ struct TextureHit {
 };
 
 template <class T>
-concept Texture = requires(const T texture, TextureHit& hit, Arguments& arguments) {
+concept Texture = Serializable<T> && requires(const T texture, TextureHit& hit, Arguments& arguments) {
   { T::keyword } -> std::convertible_to<std::string_view>;
   { T::needs } -> std::convertible_to<TextureNeeds>;
+  { T::makesTransparent } -> std::convertible_to<bool>;
   { T::parse(arguments) } -> std::same_as<std::optional<T>>;
+  { texture.otherSurface() } -> std::same_as<const Surface*>;
   texture.apply(hit);
   T::examples[0];
 };

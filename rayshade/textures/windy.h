@@ -24,6 +24,7 @@ struct Windy {
 
   static constexpr std::string_view keyword = "windy";
   static constexpr TextureNeeds needs = TextureNeeds::position;
+  static constexpr bool makesTransparent = false;
   static constexpr std::string_view examples[] = {"0.3 0.5 0 0.8 4 2.1 0.6 0.5",
                                                   "0.3 0.5 2 0.8 4 2.1 0.6 0.5"};
 
@@ -40,6 +41,7 @@ struct Windy {
     return windy;
   }
 
+  const Surface* otherSurface() const { return nullptr; }
   void apply(TextureHit& hit) const {
     const double wind = windStrength == 0 ? 1.0 : windStrength * chaos(windFrequency * hit.position, 7);
     Vec3 waves = base * vectorNoise(hit.position);

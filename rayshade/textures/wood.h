@@ -15,10 +15,12 @@ namespace rayshade {
 struct Wood {
   static constexpr std::string_view keyword = "wood";
   static constexpr TextureNeeds needs = TextureNeeds::position;
+  static constexpr bool makesTransparent = false;
   static constexpr std::string_view examples[] = {""};
 
   static std::optional<Wood> parse(Arguments&) { return Wood{}; }
 
+  const Surface* otherSurface() const { return nullptr; }
   void apply(TextureHit& hit) const {
     const Vec3 p = hit.position;
     const double turbulence = chaos(p, 7);

@@ -2,14 +2,10 @@
 // The manual has an example of every word of the language.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
+#include <map>
 #include <regex>
 #include <set>
 #include <string>
@@ -18,44 +14,10 @@
 #include "rayshade/language/parser.h"
 #include "rayshade/language/viewing.h"
 #include "rayshade/trace/render.h"
+#include "tests/support/manual.h"
 
 namespace rayshade {
 namespace {
-
-std::string textOf(const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-// The blocks between ```rayshade and ```.
-std::vector<std::string> examplesOf(const std::string& document) {
-  const std::string text = textOf(document), open = "\n```rayshade\n", close = "\n```\n";
-  std::vector<std::string> examples;
-  for (std::size_t at = text.find(open); at != std::string::npos; at = text.find(open, at)) {
-    at += open.size();
-    const std::size_t end = text.find(close, at);
-    examples.push_back(text.substr(at, end == std::string::npos ? end : end - at) + "\n");
-  }
-  return examples;
-}
-
-// A file of its own, because the preprocessor reads files.
-class TemporaryFile {
- public:
-  explicit TemporaryFile(const std::string& text) {
-    std::string name = (std::filesystem::temp_directory_path() / "language-XXXXXX").string();
-    close(mkstemp(name.data()));
-    name_ = name;
-    std::ofstream(name_, std::ios::binary) << text;
-  }
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
-  ~TemporaryFile() { std::filesystem::remove(name_); }
-  const std::string& name() const { return name_; }
-
- private:
-  std::string name_;
-};
 
 std::vector<Color> renderTiny(const std::string& example) {
   const TemporaryFile file(example);
@@ -100,33 +62,44 @@ TEST(Language, EverySceneOfADifferenceIsRenderedWithoutAWarning) {
   renderExamples("docs/compatibility.md", 10);
 }
 
+// All words of the language, and what each is.
+using Words = std::map<std::string, std::string>;
+
 template <class List>
-void addKeywords(std::set<std::string>& words) {
-  List::forEach([&]<class T>() { words.emplace(T::keyword); });
+void addKeywords(Words& words, const std::string& kind) {
+  List::forEach([&]<class T>() {
+    words.emplace(T::keyword, kind);
+    if constexpr (requires { T::aliases; })
+      for (const std::string_view alias : T::aliases) words.emplace(alias, kind);
+  });
 }
 
-TEST(Language, TheManualHasAnExampleOfEveryWord) {
-  std::set<std::string> wanted;
+Words wordsOfTheLanguage() {
+  Words words;
+  addKeywords<AllShapes>(words, "the primitive of rayshade/shapes");
+  addKeywords<AllTextures>(words, "the texture of rayshade/textures");
+  addKeywords<AllLights>(words, "the light of rayshade/lights");
+  addKeywords<AllEffects>(words, "the effect of rayshade/atmosphere");
   const std::string source = textOf("rayshade/language/keywords.cc");
   const std::regex entry("\\{\"([a-z]+)\", Word::");
   for (std::sregex_iterator at(source.begin(), source.end(), entry), end; at != end; ++at)
-    wanted.insert((*at)[1]);
-  EXPECT_GT(wanted.size(), 60u);
-  addKeywords<AllShapes>(wanted);
-  addKeywords<AllTextures>(wanted);
-  addKeywords<AllLights>(wanted);
-  addKeywords<AllEffects>(wanted);
-  wanted.insert("poly");
+    words.emplace((*at)[1], "the word of rayshade/language/keywords.cc");
+  return words;
+}
 
+TEST(Language, TheManualHasAnExampleOfEveryWord) {
+  const Words words = wordsOfTheLanguage();
+  EXPECT_GT(words.size(), 100u);
   std::set<std::string> shown;
-  const std::regex comment("/\\*[^*]*\\*/"), word("[a-z]+");
+  const std::regex comment("/\\*[^*]*\\*/"), word("[a-z][a-z0-9]*");
   for (const std::string& example : examplesOf("docs/language.md")) {
     const std::string text = std::regex_replace(example, comment, " ");
     for (std::sregex_iterator at(text.begin(), text.end(), word), end; at != end; ++at)
       shown.insert(at->str());
   }
-  for (const std::string& keyword : wanted)
-    EXPECT_TRUE(shown.contains(keyword)) << keyword << " has no example";
+  for (const auto& [keyword, kind] : words)
+    EXPECT_TRUE(shown.contains(keyword)) << "docs/language.md has no example of `" << keyword << "`, " << kind
+                                         << ": add a scene that shows it, in a block ```rayshade";
 }
 
 }  // namespace

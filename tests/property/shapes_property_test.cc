@@ -1,9 +1,14 @@
 // What every shape must keep, asked of random shapes and random rays.
 //
-// Every type of AllShapes takes part with its examples; one for which this file has a randomShape(), a scaled()
-// or an offSurface() (distance from the true surface, in long double) takes part in those demands, too.
+// Every type of AllShapes takes part with its examples and with random ones: those that this file has a make() for, or
+// what comes of the examples when their numbers are changed at random.  So a new shape needs no edit here.  One for
+// which there is a scaled() or an offSurface() (distance from the true surface, in long double) takes part in those
+// demands, too.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
+
+#include <charconv>
+#include <sstream>
 
 #include "rayshade/base/random.h"
 #include "rayshade/shapes/all.h"
@@ -88,6 +93,23 @@ void make(Dice& dice, Polygon& p) {
   if (std::optional<Polygon> made = Polygon::parse(in)) p = *made;
 }
 
+// The text of an example, each of its numbers changed by up to a quarter, or by as much of 1; words stay.
+std::string varied(std::string_view example, Dice& dice) {
+  std::istringstream in{std::string(example)};
+  std::ostringstream out;
+  out.precision(17);
+  for (std::string word; in >> word;) {
+    double value = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (error != std::errc() || end != word.data() + word.size()) {
+      out << word << ' ';
+    } else {
+      out << value + 0.25 * dice.between(-1, 1) * (value != 0 ? value : dice.chance(0.5) ? 0 : 1) << ' ';
+    }
+  }
+  return out.str();
+}
+
 // ------------------------------------------------------------------------------------- scaled by a power of two
 
 Sphere scaled(const Sphere& s, double k) { return {k * s.centre, k * s.radius}; }
@@ -168,22 +190,26 @@ Wide offSurface(const Polygon& s, Vec3 p) { return toPlane(p, s.corners[0], s.no
 template <class S>
 class EveryShape : public testing::Test {
  protected:
-  // Its examples, and random ones.
+  // Its examples, and random ones: what this file makes, or else its examples varied.
   static std::vector<S> subjects() {
     std::vector<S> list;
-    for (const std::string_view example : S::examples) {
-      TextArguments in(example);
-      try {
-        if (const std::optional<S> shape = S::parse(in)) list.push_back(*shape);
-      } catch (const std::runtime_error&) {
-        EXPECT_TRUE(in.namesFile()) << S::keyword << ' ' << example;  // the file need not be there
-      }
-    }
-    if constexpr (requires(Dice & dice, S & shape) { make(dice, shape); }) {
-      Dice dice(1);
+    for (const std::string_view example : S::examples) read(example, list);
+    Dice dice(1);
+    if constexpr (requires(S & shape) { make(dice, shape); }) {
       for (int i = 0; i < 60; ++i) make(dice, list.emplace_back());
+    } else {
+      for (const std::string_view example : S::examples)
+        for (int i = 0; i < 20; ++i) read(varied(example, dice), list);
     }
     return list;
+  }
+  static void read(std::string_view text, std::vector<S>& list) {
+    TextArguments in(text);
+    try {
+      if (const std::optional<S> shape = S::parse(in)) list.push_back(*shape);
+    } catch (const std::runtime_error&) {
+      EXPECT_TRUE(in.namesFile()) << S::keyword << ' ' << text;  // the file need not be there
+    }
   }
 
   // Most of them meet the shape: aimed at its extent from outside, from near, from inside.
@@ -232,7 +258,6 @@ template <class List>
 struct AsTestTypes;
 template <class... T>
 struct AsTestTypes<TypeList<T...>> {
-  static_assert((Shape<T> && ...));
   using Types = testing::Types<T...>;
 };
 TYPED_TEST_SUITE(EveryShape, AsTestTypes<AllShapes>::Types);
@@ -248,6 +273,13 @@ TYPED_TEST(EveryShape, ItsExamplesAreReadToTheEnd) {
       EXPECT_TRUE(in.namesFile()) << example;
     }
   }
+}
+TYPED_TEST(EveryShape, ThereAreEnoughSubjects) {
+  const std::vector<TypeParam> subjects = this->subjects();
+  if (subjects.empty()) return;  // made of a file
+  EXPECT_GE(subjects.size(), std::size(TypeParam::examples) + 15)
+      << "`examples` of the shape `" << TypeParam::keyword
+      << "` give too few shapes when their numbers change a little: change them, in the file of the shape";
 }
 TYPED_TEST(EveryShape, HitsLieOnTheSurfaceWithinTheErrorSaid) {
   this->forEveryHit([](const auto& shape, const LocalRay& ray, double t) {

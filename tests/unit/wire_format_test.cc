@@ -2,9 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <regex>
+#include <set>
 #include <sstream>
 #include <string>
 #include <variant>
@@ -98,37 +101,61 @@ TEST(WireFormat, TheExampleIsWhatTheCodeWrites) {
   EXPECT_EQ(again, bytes);
 }
 
-// Names as they stand in the code, because a program does not know the names of its types.
-std::vector<std::string> namesOfMessages() {
-  const std::string source = textOf("pvm/messages/all.h");
-  std::smatch list;
-  std::vector<std::string> names;
-  if (!std::regex_search(source, list, std::regex("using AllMessages =\\s*TypeList<([A-Za-z,\\s]*)>")))
-    return names;
-  const std::string inside = list[1];
-  const std::regex name("[A-Za-z]+");
-  for (std::sregex_iterator at(inside.begin(), inside.end(), name), end; at != end; ++at)
-    names.push_back(at->str());
-  return names;
+// A message as it stands in the code, because a program does not know the names of its types.
+struct MessageInSource {
+  std::string name, file;
+  bool listed = false;
+};
+
+// By tag.
+std::multimap<std::size_t, MessageInSource> messagesInSource() {
+  std::multimap<std::size_t, MessageInSource> messages;
+  for (const auto& entry : std::filesystem::directory_iterator("pvm/messages")) {
+    const std::string file = entry.path().string(), source = textOf(file.c_str());
+    std::set<std::string> listed;
+    const std::regex list("using [A-Za-z]*Messages =\\s*TypeList<([^>]*)>"), name("[A-Za-z]+");
+    for (std::sregex_iterator at(source.begin(), source.end(), list), end; at != end; ++at) {
+      const std::string inside = (*at)[1];
+      for (std::sregex_iterator word(inside.begin(), inside.end(), name); word != end; ++word)
+        listed.insert(word->str());
+    }
+    const std::regex message(
+        "\nstruct ([A-Za-z]+) \\{[^}]*?\\bbool isFact = (true|false);([^}]*?\\btag = ([0-9]+);)?");
+    for (std::sregex_iterator at(source.begin(), source.end(), message), end; at != end; ++at) {
+      const std::string found = (*at)[1];
+      EXPECT_TRUE((*at)[3].matched) << found << " in " << file << " has no tag";
+      const std::size_t tag = (*at)[3].matched ? std::stoul((*at)[4]) : 999;
+      messages.insert({tag, {found, file, listed.contains(found)}});
+    }
+  }
+  return messages;
+}
+
+TEST(WireFormat, EveryMessageIsInTheListOfItsFile) {
+  const auto messages = messagesInSource();
+  for (const auto& [tag, message] : messages)
+    EXPECT_TRUE(message.listed) << "the message " << message.name
+                                << " is in no list: append it to the list at the end of " << message.file;
+  EXPECT_EQ(messages.size(), AllMessages::size) << "pvm/messages: struct with isFact, and AllMessages";
 }
 
 TEST(WireFormat, TheListHasEveryMessageWithItsTagKindAndLeastSize) {
   const std::string text = document();
-  const std::regex row("\n- ([0-9]+) `([A-Za-z]+)`, (fact|work), ([0-9]+)(?=[:\n])");
-  std::vector<std::smatch> rows;
-  for (std::sregex_iterator at(text.begin(), text.end(), row), end; at != end; ++at) rows.push_back(*at);
-  const std::vector<std::string> names = namesOfMessages();
-  ASSERT_EQ(names.size(), AllMessages::size);
-  ASSERT_EQ(rows.size(), AllMessages::size);
-  std::size_t tag = 0;
+  const std::regex row("\n(- [0-9]+ `[A-Za-z]+`, (fact|work), [0-9]+)(?=[:\n])");
+  std::set<std::string> rows;
+  for (std::sregex_iterator at(text.begin(), text.end(), row), end; at != end; ++at) rows.insert((*at)[1]);
+  const auto messages = messagesInSource();
   AllMessages::forEach([&]<class M>() {
-    SCOPED_TRACE(names[tag]);
-    EXPECT_EQ(rows[tag][1].str(), std::to_string(tag));
-    EXPECT_EQ(rows[tag][2].str(), names[tag]);
-    EXPECT_EQ(rows[tag][3].str(), M::isFact ? "fact" : "work");
-    EXPECT_EQ(rows[tag][4].str(), std::to_string(1 + encode(M{}).size()));
-    ++tag;
+    const auto named = messages.find(M::tag);
+    ASSERT_NE(named, messages.end()) << "no struct in pvm/messages has tag " << int(M::tag);
+    std::ostringstream wanted;
+    wanted << "- " << int(M::tag) << " `" << named->second.name << "`, " << (M::isFact ? "fact" : "work")
+           << ", " << 1 + encode(M{}).size();
+    EXPECT_EQ(rows.erase(wanted.str()), 1u)
+        << "docs/wire-format.md, list of messages: it must have a line that begins " << wanted.str();
   });
+  for (const std::string& left : rows)
+    ADD_FAILURE() << "docs/wire-format.md, list of messages: no message is " << left;
 }
 
 TEST(WireFormat, TheDocumentHasTheVersionOfTheCode) {
