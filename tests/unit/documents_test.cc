@@ -67,6 +67,15 @@ TEST(Documents, GeneratedPartsAreThoseOfTheCode) {
   EXPECT_EQ(finished.status, 0) << finished.output << finished.errors;
 }
 
+// What architecture.md says of the way of a ray is what the programs call.
+TEST(Documents, TheLifeOfARayIsThatOfThePrograms) {
+  const ScratchDirectory scratch("documents");
+  Program program({"tests/support/life_of_a_ray", programDirectory()}, scratch / "life");
+  const Finished finished = program.wait(120);
+  EXPECT_TRUE(finished.inTime);
+  EXPECT_EQ(finished.status, 0) << finished.output << finished.errors;
+}
+
 TEST(Documents, LinksLeadSomewhere) {
   const std::regex link("\\]\\(([^)#:]*)(#[^)]*)?\\)");
   int links = 0;
