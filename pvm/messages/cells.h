@@ -23,7 +23,7 @@ struct CellItems {
 };
 
 struct CacheCounts {
-  std::uint64_t asked = 0;    // look-ups
+  std::uint64_t lookups = 0;  // of a cell, by a ray
   std::uint64_t hits = 0;     // of those, found
   std::uint64_t fetched = 0;  // cells that came in
   std::uint64_t fetchedBytes = 0;
@@ -43,7 +43,7 @@ void serialize(Archive& archive, CellItems& m) {
 
 template <class Archive>
 void serialize(Archive& archive, CacheCounts& c) {
-  archive(c.asked, c.hits, c.fetched, c.fetchedBytes, c.evicted, c.peakBytes);
+  archive(c.lookups, c.hits, c.fetched, c.fetchedBytes, c.evicted, c.peakBytes);
 }
 
 using CellMessages = TypeList<CellWanted, CellItems>;

@@ -9,7 +9,7 @@ namespace rayshade {
 bool isComplete(const Configure& message) {
   const std::size_t cells = cellCount(message.tree);
   return isComplete(message.directory, message.tree) &&
-         (!message.directory.shadeTasks.empty() || message.policy.shadeAtOnce) &&
+         (!message.directory.shadeTasks.empty() || message.policy.shadeLocally) &&
          message.cellBytes.size() == cells && message.cellBounds.size() == cells &&
          message.policy.outstanding > 0;
 }

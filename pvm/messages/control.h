@@ -26,7 +26,7 @@ struct DemandPolicy {
   ShadowPolicy shadows = ShadowPolicy::forward;
   Horizon horizon;
   bool secondariesTravel = true;        // false: pyramid tasks trace secondary rays too, with what they fetch
-  bool shadeAtOnce = false;             // what gets all of its colours where it was found is shaded there
+  bool shadeLocally = false;             // what gets all of its colours where it was found is shaded there
   std::uint64_t cacheBytes = 64 << 20;  // of each task
   std::uint32_t outstanding = 64;       // cells asked for at a time
 };
@@ -154,7 +154,7 @@ void serialize(Archive& archive, Horizon& h) {
 
 template <class Archive>
 void serialize(Archive& archive, DemandPolicy& p) {
-  archive(p.shadows, p.horizon, p.secondariesTravel, p.shadeAtOnce, p.cacheBytes, p.outstanding);
+  archive(p.shadows, p.horizon, p.secondariesTravel, p.shadeLocally, p.cacheBytes, p.outstanding);
 }
 
 template <class Archive>

@@ -51,7 +51,7 @@ void applySchedule(HostProgramOptions& o, std::uint32_t hosts) {
     policy.secondariesTravel = false;
   }
   host.split = o.split == "cost" ? Split::cost : Split::equal;
-  policy.shadeAtOnce = o.shading ? *o.shading == "near" : o.schedule != "data";
+  policy.shadeLocally = o.shading ? *o.shading == "local" : o.schedule != "data";
   // Every cluster has somebody to work for.
   if (host.wishes.pyramids > 0) host.wishes.pyramids = std::max(host.wishes.pyramids, host.wishes.clusters);
   if (o.pyramids) host.wishes.pyramids = *o.pyramids;
@@ -111,8 +111,8 @@ void declareHostOptions(CLI::App& app, HostProgramOptions& o) {
       ->group(sharing);
   app.add_option(
          "--shading", o.shading,
-         "separate: always by shade tasks; near: by the task that found the hit, if nothing of it leaves")
-      ->check(CLI::IsMember({"separate", "near"}))
+         "separate: always by shade tasks; local: by the task that found the hit, if nothing of it leaves")
+      ->check(CLI::IsMember({"separate", "local"}))
       ->group(sharing);
   app.add_option("--cache", o.cacheMegabytes, "object cache of each task, in MB")
       ->check(CLI::PositiveNumber)
@@ -167,7 +167,7 @@ void writeTable(std::FILE* to, const HostSummary& s, std::uint64_t pictureSum) {
                  "%s %u: cache %.2f %% hits (shadow rays %.2f %%), %" PRIu64
                  " cells fetched, %.2f MB, %" PRIu64 " thrown out",
                  programName(task.placement.role) + 9, task.placement.index,
-                 percent(r.cache.hits, r.cache.asked), percent(r.shadowCache.hits, r.shadowCache.asked),
+                 percent(r.cache.hits, r.cache.lookups), percent(r.shadowCache.hits, r.shadowCache.lookups),
                  r.cache.fetched, megabytes(r.cache.fetchedBytes), r.cache.evicted);
     if (r.pyramids > 0)
       std::fprintf(to, "; %" PRIu64 " pyramids, %" PRIu64 " of %" PRIu64 " rays went on to the voxels",

@@ -61,7 +61,7 @@ void addPolicy(std::string& text, const HostOptions& options, const SceneSetting
       policy.secondariesTravel || options.wishes.pyramids == 0 ? "travel from voxel to voxel"
                                                                : "in the pyramid task that found the hit");
   add(text, "shading         %s\n",
-      policy.shadeAtOnce
+      policy.shadeLocally
           ? "where all colours come from the task that found the hit, by that task; else by shade tasks"
           : "by shade tasks");
 }

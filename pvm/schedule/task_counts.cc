@@ -28,7 +28,7 @@ NeededTasks neededTasks(const SceneWork& work, const HostOptions& options, std::
                                 "no more pyramids in the picture, of " + std::to_string(tile) + " rays");
   // Does every hit have all of its colours where it is found?
   const bool whole = tasks.wishes.voxels == 1 && tasks.wishes.pyramids == 0 && options.voxelsPerTask <= 1;
-  if (options.policy.shadeAtOnce && (whole || (!work.secondaryRays && !work.shadowRays))) {
+  if (options.policy.shadeLocally && (whole || (!work.secondaryRays && !work.shadowRays))) {
     tasks.wishes.shades = 0;
     tasks.why.push_back(
         std::string("no shade tasks: every hit is shaded where it is found, ") +

@@ -57,7 +57,7 @@ ShadeLedger::Verdict ShadeLedger::expect(Expect&& message) {
   record->missing = message.pending;
   if (message.hit.back.transmitted) record->missing.push_back(kTransmittedSlot);
   if (message.hit.back.reflected) record->missing.push_back(kReflectedSlot);
-  record->settled = {std::move(message.hit), std::move(message.gathered), message.to};
+  record->content = {std::move(message.hit), std::move(message.gathered), message.to};
   for (const LightAnswer& answer : record->early) fill(*record, answer.slot, answer.color);
   return conclude(message.record, *record);
 }
@@ -78,7 +78,7 @@ bool ShadeLedger::fill(Record& record, Slot slot, Color color) {
   if (at == record.missing.end()) return false;
   *at = record.missing[record.missing.size() - 1];
   record.missing.pop_back();
-  Gathered& gathered = record.settled.gathered;
+  Gathered& gathered = record.content.gathered;
   if (slot == kTransmittedSlot) {
     gathered.transmitted = color;
   } else if (slot == kReflectedSlot) {
@@ -91,7 +91,7 @@ bool ShadeLedger::fill(Record& record, Slot slot, Color color) {
 
 ShadeLedger::Verdict ShadeLedger::conclude(RecordId id, Record& record) {
   if (!record.missing.empty()) return Verdict::waiting;
-  last_ = &record.settled;
+  last_ = &record.content;
   Ring& ring = rings_[finderOf(id)];
   std::uint32_t& place = ring.places[numberOf(id) - ring.first];
   free_.push_back(place);

@@ -33,7 +33,7 @@ class ShadeLedger {
   Verdict expect(Expect&& message);
   Verdict arrive(RecordId record, Slot slot, Color color);
 
-  // What was settled last, until the next call.
+  // What was completed last, until the next call.
   const CompleteRecord& complete() const { return *last_; }
   std::size_t open() const { return open_; }
 
@@ -42,7 +42,7 @@ class ShadeLedger {
   static constexpr std::uint32_t kUnopened = 0xffffffffu, kClosed = 0xfffffffeu;
 
   struct Record {
-    CompleteRecord settled;
+    CompleteRecord content;
     bool expected = false;
     InlineVector<Slot, 8> missing;   // once expected
     std::vector<LightAnswer> early;  // until then

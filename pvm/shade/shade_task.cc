@@ -40,9 +40,9 @@ void ShadeTask::act(ShadeLedger::Verdict verdict) {
   if (verdict == ShadeLedger::Verdict::refused) ++context_.outbox.traffic.refused;
   if (verdict != ShadeLedger::Verdict::complete) return;
   ++combined_;
-  const CompleteRecord& settled = ledger_.complete();
-  const Color color = combine(settled.hit, settled.gathered, settings_);
-  context_.outbox.post(settled.to.task, Answer{settled.to.record, settled.to.slot, color});
+  const CompleteRecord& complete = ledger_.complete();
+  const Color color = combine(complete.hit, complete.gathered, settings_);
+  context_.outbox.post(complete.to.task, Answer{complete.to.record, complete.to.slot, color});
 }
 
 }  // namespace rayshade

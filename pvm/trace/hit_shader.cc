@@ -7,7 +7,7 @@ namespace rayshade {
 
 void HitShader::traceLight(std::span<const RayHit> hits) {
   if (hits.empty()) return;
-  shadeHits(space_, hits, at_.settings, {.sums = at_.policy.shadeAtOnce, .records = true}, shaded_, room_,
+  shadeHits(space_, hits, at_.settings, {.sums = at_.policy.shadeLocally, .records = true}, shaded_, room_,
             counts_);
 }
 
@@ -15,7 +15,7 @@ void HitShader::traceLight(std::span<const RayHit> hits) {
 // there are any.
 std::optional<ReplyTo> HitShader::finishHit(ShadedHit& at, const ReplyTo& to) {
   const bool onward = at.onward.transmitted || at.onward.reflected;
-  if (at_.policy.shadeAtOnce && at.pending.empty()) {
+  if (at_.policy.shadeLocally && at.pending.empty()) {
     const ReturnPath back = returnPath(*at.ray, at.t, at.onward, at_.settings);
     if (onward) return replies_.await(at.sum, back, to);
     replies_.countCombined();

@@ -4,7 +4,7 @@
 namespace rayshade {
 
 RegionRef ObjectCache::find(CellId cell, std::size_t rays) {
-  counts_.asked += rays;
+  counts_.lookups += rays;
   const auto found = cells_.find(static_cast<std::uint32_t>(cell));
   if (found == cells_.end()) return {};
   counts_.hits += rays;

@@ -16,7 +16,7 @@ RegionRef TaskSpace::region(std::uint32_t block, std::size_t rays, RayKind kind)
   if (b.held) return {&share_->model(), share_->region(b.voxel)};
   const RegionRef cached = cache_.find(b.cell, rays);
   if (kind == RayKind::shadow) {
-    shadowLookups_.asked += rays;
+    shadowLookups_.lookups += rays;
     if (cached.region != nullptr) shadowLookups_.hits += rays;
   }
   return cached;

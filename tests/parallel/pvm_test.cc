@@ -168,7 +168,7 @@ TEST_F(Pvm, AKilledTaskIsReplacedAndThePictureIsTheSame) {
   const std::string expected = sequential(kLong, "sequential.pfm");
   for (const auto& [victim, shading] : {std::pair{"rayshade-voxel-trace", "separate"},
                                         {"rayshade-shade", "separate"},
-                                        {"rayshade-voxel-trace", "near"}}) {
+                                        {"rayshade-voxel-trace", "local"}}) {
     SCOPED_TRACE(std::string(victim) + " " + shading);
     const auto host =
         startHost(std::string("--voxels 3 --shades 2 --shading ") + shading + " " + kLong, "picture.pfm");

@@ -41,7 +41,7 @@ HostOptions randomSchedule(std::uint64_t seed) {
   DemandPolicy& policy = host.policy;
   policy.shadows = dice.one({ShadowPolicy::forward, ShadowPolicy::local, ShadowPolicy::automatic});
   policy.secondariesTravel = dice.below(3) != 0;
-  policy.shadeAtOnce = dice.below(2) == 0;
+  policy.shadeLocally = dice.below(2) == 0;
   policy.cacheBytes =
       dice.one<std::uint64_t>({0, 1, 20'000, 1 << 26});  // none, no room for any cell, a few, all
   policy.outstanding = dice.one({1u, 64u});

@@ -53,7 +53,7 @@ TEST(LocalHits, AHitIsShadedOnceByWhoeverHasItsLastColour) {
       HostOptions options;
       options.wishes.voxels = voxels;
       options.wishes.shades = 2;
-      options.policy.shadeAtOnce = true;
+      options.policy.shadeLocally = true;
       const RenderedByTasks got = renderByTasks(job, options, {.seed = seed});
       EXPECT_EQ(difference(got.frames, alone.frames), "");
       std::uint64_t near = 0, far = 0, hits = 0;

@@ -135,7 +135,7 @@ TEST(Messages, DamagedPacketsDoNoHarm) {
   feed<ShadeTask>(damaged);
 }
 
-// Only a task itself knows its near hits (near_hits.h): nobody may claim to bring a colour to one.
+// Only a task itself knows its locally shaded hits (local_hits.h): nobody may claim to bring a colour to one.
 TEST(Messages, ARayWithTheAddressOfItsReceiverIsRefused) {
   NullLink link;
   VoxelTask task(link);

@@ -165,7 +165,7 @@ TEST(ObjectCache, CountsWhatHappens) {
   cache.find(CellId{0});
   cache.find(CellId{1});
   cache.find(CellId{2});
-  EXPECT_EQ(cache.counts().asked, 3u);
+  EXPECT_EQ(cache.counts().lookups, 3u);
   EXPECT_EQ(cache.counts().hits, 2u);
   EXPECT_EQ(cache.counts().fetched, 3u);
   EXPECT_EQ(cache.counts().fetchedBytes, 300u);

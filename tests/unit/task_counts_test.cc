@@ -24,7 +24,7 @@ HostOptions nearShading(std::uint32_t voxels, std::uint32_t pyramids) {
   HostOptions options;
   options.wishes.voxels = voxels;
   options.wishes.pyramids = pyramids;
-  options.policy.shadeAtOnce = true;
+  options.policy.shadeLocally = true;
   options.policy.shadows = ShadowPolicy::local;
   return options;
 }
@@ -76,7 +76,7 @@ TEST(SceneWork, NoShadeTasksWhereNoColourIsWaitedFor) {
   EXPECT_EQ(rendersTheSame(dark + kThree + mirror, nearShading(2, 1)), 1u);
   EXPECT_EQ(rendersTheSame(lit + kThree + mirror, nearShading(1, 0)), 0u);
   HostOptions apart = nearShading(2, 1);
-  apart.policy.shadeAtOnce = false;
+  apart.policy.shadeLocally = false;
   EXPECT_EQ(rendersTheSame(dark + kThree, apart), 1u);
 }
 
@@ -84,7 +84,7 @@ TEST(SceneWork, AHostThatForgetsTheShadeTasksGetsNoReplyButDoesNoHarm) {
   const std::string scene = kPicture + kThree;
   HostOptions options = nearShading(2, 1);
   options.wishes.shades = 0;
-  options.policy.shadeAtOnce = false;
+  options.policy.shadeLocally = false;
   options.patienceAtStart = options.killAfter = 1;
   options.mostSuccessions = 1;
   EXPECT_ANY_THROW(renderByTasks(jobOfText(scene), options, {.seed = 1}));
