@@ -132,7 +132,7 @@ bench-embree: LIBRARIES += -lembree3
 bench-embree: $(BIN)/bench/embree_rate
 
 bench: $(BIN)/rayshade $(BIN)/rayshade-error $(BIN)/spd
-	@tests/bench/speed_and_error --bin $(BIN) docs
+	@PYTHONDONTWRITEBYTECODE=1 tests/bench/speed_and_error/run --bin $(BIN) docs
 
 experiments: all
 	@PYTHONDONTWRITEBYTECODE=1 tests/bench/experiments/run $(BIN) $(if $(QUICK),$(BUILD)/experiments --quick,docs/experiments)
