@@ -3,7 +3,7 @@
 //   accuracy [RAYS]          TSV on standard output; a million rays for each kernel, a tenth of them for the torus
 //
 // Shapes of about size 1 at the origin; rays come from 2 to 1e7 away (log-uniform) and aim at points in and around the shape, one in
-// four at an edge, a corner or a silhouette.  The truth is computed with 256 bits (tests/support/exact_geometry.h).
+// four at an edge, a corner or a silhouette.  The truth is computed with 256 bits (tests/support/oracle/exact_geometry.h).
 //
 //   ns          processor time per ray, the best of several turns over the first rays
 //   typical     median error of t, in units in the last place of the true t
@@ -12,7 +12,7 @@
 //   missed, phantom      per million rays: a hit that the kernel does not see, one that is not there
 //   wrong       per million rays: those of them, and those hits, that rounding of the numbers given cannot excuse: a point
 //               farther from the shape than the oracle's bound, nothing where the ray goes through it by more than that
-//               (tests/support/oracle.h)
+//               (tests/support/oracle/oracle.h)
 //
 // The textbook formulas live here only.  Sources: sphere, cylinder, cone, box: Haines, and Kay & Kajiya, in Glassner, An Introduction
 // to Ray Tracing, 1989, and as in Rayshade 4; triangle: Möller & Trumbore, JGT 2(1), 1997; torus: the quartic of the ray
@@ -25,7 +25,7 @@
 #include <ctime>
 
 #include "rayshade/base/random.h"
-#include "tests/support/exact_geometry.h"
+#include "tests/support/oracle/exact_geometry.h"
 
 namespace rayshade {
 namespace {

@@ -3,6 +3,7 @@
 //
 // RAYSHADE_TEST_SEEDS=N makes N renders of each kind instead of the few hundred of every day.  A failure prints the
 // seed that repeats it.
+// guarded: juggles tasks
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 

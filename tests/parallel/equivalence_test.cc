@@ -2,6 +2,7 @@
 // bits of the sequential renderer's.
 //
 // RAYSHADE_TEST_SEEDS=N tries N random scenes instead of the few of every day.
+// guarded: juggles tasks
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 

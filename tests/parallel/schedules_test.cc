@@ -1,6 +1,7 @@
 // What travels, rays or objects, and how far pyramids go, is a question of time: the picture has the same bits.
 //
 // RAYSHADE_TEST_SEEDS=N tries N random scenes instead of the few of every day.
+// guarded: juggles tasks
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 

@@ -1,5 +1,6 @@
 // Tracing with cells that were fetched finds what tracing with the whole voxels finds, bit for bit, wherever it was
 // interrupted.
+// guarded: borrows cells of others
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rayshade/trace/local_trace.h"
 

@@ -1,4 +1,5 @@
 // Every message as it really travels: taken from the traffic of simulated renders.
+// guarded: reads bytes of others
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pvm/messages/all.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tests/support/oracle.h"
+#include "tests/support/oracle/oracle.h"
 
 #include <cstdio>
 #include <functional>
@@ -9,7 +9,7 @@
 #include "rayshade/shading/surface_point.h"
 #include "rayshade/space/clip_list.h"
 #include "rayshade/space/walk.h"
-#include "tests/support/exact_geometry.h"
+#include "tests/support/oracle/exact_geometry.h"
 
 namespace rayshade {
 namespace {
