@@ -24,8 +24,8 @@
 #include <cstdlib>
 #include <ctime>
 
-#include "rayshade/base/random.h"
 #include "tests/support/oracle/exact_geometry.h"
+#include "tests/support/random.h"
 
 namespace rayshade {
 namespace {
@@ -145,31 +145,17 @@ double textbook(const Torus& torus, const LocalRay& ray) {  // axis z, centre at
 
 constexpr double kReach = 1.5;  // of all shapes here
 
-class Dice {
- public:
-  double between(double low, double high) {
-    return low + (high - low) * uniform(RandomKey{++count_}, Dimension::lensX);
-  }
-  Vec3 direction() {
-    const double z = between(-1, 1), turn = between(0, 6.283185307), r = std::sqrt(1 - z * z);
-    return {r * std::cos(turn), r * std::sin(turn), z};
-  }
-
- private:
-  std::uint64_t count_ = 0;
-};
-
 std::vector<LocalRay> raysAt(const std::vector<Vec3>& edges, std::size_t count) {
-  Dice dice;
+  Random random(1);
   std::vector<LocalRay> rays;
   while (rays.size() < count) {
-    Vec3 target = std::cbrt(dice.between(0, 1)) * 1.2 * dice.direction();
+    Vec3 target = std::cbrt(random.real()) * 1.2 * random.direction();
     if (!edges.empty() && rays.size() % 4 == 0) {
-      const auto i = static_cast<std::size_t>(dice.between(0, static_cast<double>(edges.size())));
+      const auto i = random.below(edges.size());
       const Vec3 a = edges[i], b = edges[(i + 1) % edges.size()];
-      target = a + (rays.size() % 8 == 0 ? 0 : dice.between(0, 1)) * (b - a);
+      target = a + (rays.size() % 8 == 0 ? 0 : random.real()) * (b - a);
     }
-    const Vec3 origin = target + std::exp(dice.between(std::log(2), std::log(1e7))) * dice.direction();
+    const Vec3 origin = target + random.magnitude(2, 1e7) * random.direction();
     rays.push_back({origin, normalize(target - origin)});
   }
   return rays;

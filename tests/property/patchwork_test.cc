@@ -6,8 +6,8 @@
 
 #include "rayshade/language/parser.h"
 #include "rayshade/space/voxel_bounds.h"
-#include "tests/support/numbers.h"
 #include "tests/support/random_scene.h"
+#include "tests/support/seeded_random.h"
 
 namespace rayshade {
 namespace {
@@ -40,7 +40,7 @@ class Cells : public PatchSource {
         contents[at] = join(contents[at], boundsInCell(model.boundsOf(object), tree, cell));
       }
     }
-    Numbers numbers(seed);
+    SeededRandom numbers(seed);
     std::vector<Bounds> boxes;
     for (std::size_t cell = 0; cell < inCell.size(); ++cell) {
       if (inCell[cell].empty()) continue;
@@ -66,7 +66,7 @@ class Cells : public PatchSource {
   std::vector<bool> isHere_;
 };
 
-std::vector<Ray> bundle(Numbers& numbers, std::size_t count) {
+std::vector<Ray> bundle(Random& numbers, std::size_t count) {
   std::vector<Ray> rays(count);
   const Vec3 eye = numbers.point(-7, 7);
   const double spread = numbers.real(0, 1) < 0.5 ? 0.1 : 3;
@@ -85,7 +85,7 @@ TEST(Patchwork, WhatIsSettledIsRight) {
     const double shares[] = {0, 0.5, 0.9, 1};
     const double here = shares[seed % 4];
     Cells cells(seed, here);
-    Numbers numbers(seed + 1000);
+    SeededRandom numbers(seed + 1000);
     for (std::size_t round = 0; round < 12; ++round) {
       SCOPED_TRACE(testing::Message() << "seed " << seed << " round " << round);
       const std::vector<Ray> rays = bundle(numbers, 1 + (seed + 5 * round) % kBundleSize);

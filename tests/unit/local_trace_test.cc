@@ -11,34 +11,12 @@
 #include "rayshade/language/parser.h"
 #include "rayshade/scene/extract.h"
 #include "tests/support/random_scene.h"
+#include "tests/support/seeded_random.h"
 
 namespace rayshade {
 namespace {
 
 constexpr Exposure kExposure{0.25, 0.75, 0};
-
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : key_(sampleKey(seed, 0, 0, 0, 0)) {}
-  double real(double low, double high) {
-    return low + (high - low) * uniform(key_, Dimension::lensX, ++count_);
-  }
-  bool chance(double p) { return real(0, 1) < p; }
-  Vec3 point(double low, double high) {
-    const double x = real(low, high), y = real(low, high), z = real(low, high);
-    return {x, y, z};
-  }
-  Vec3 direction() {
-    for (;;) {
-      const Vec3 v = point(-1, 1);
-      if (dot(v, v) > 0.01 && dot(v, v) < 1) return normalize(v);
-    }
-  }
-
- private:
-  RandomKey key_;
-  std::uint32_t count_ = 0;
-};
 
 // A random scene, cut into voxels and cells.
 class CutScene : public VoxelSource {
@@ -149,7 +127,7 @@ TEST(LocalTrace, FindsWhatTheVoxelsFind) {
   int hits = 0, misses = 0, fetched = 0;
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
     const CutScene scene(seed);
-    Random random(seed);
+    SeededRandom random(seed);
     Task task(scene, random, 0.4);
     for (int i = 0; i < 25; ++i) {
       const Ray ray = randomRay(random);
@@ -184,7 +162,7 @@ TEST(LocalTrace, ShadowsAreThoseOfTheVoxels) {
   int dark = 0, filtered = 0;
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
     const CutScene scene(seed);
-    Random random(seed + 1000);
+    SeededRandom random(seed + 1000);
     Task task(scene, random, 0.4);
     ShadowRay before;
     for (int i = 0; i < 25; ++i) {
@@ -225,7 +203,7 @@ TEST(LocalTrace, AShadowRayMayBeHandedOverWhereItMissedACell) {
   int handedOver = 0;
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
     const CutScene scene(seed);
-    Random random(seed + 2000);
+    SeededRandom random(seed + 2000);
     Task task(scene, random, 0.5);
     for (std::uint32_t c = 0; c < cellCount(scene.tree); ++c)
       if (random.chance(0.5)) task.fetch(CellId{c});
@@ -259,7 +237,7 @@ TEST(LocalTrace, AShadowRayMayBeHandedOverWhereItMissedACell) {
 TEST(LocalTrace, WithAllVoxelsOfOnesOwnTheVisitsAreTheSame) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     const CutScene scene(seed);
-    Random random(seed + 3000);
+    SeededRandom random(seed + 3000);
     Task task(scene, random, 1);
     TraceCounts local, whole;
     for (int i = 0; i < 50; ++i) {
