@@ -14,9 +14,18 @@
 #   make experiments  the schemes of the paper measured over PVM, into docs/experiments/ (7 minutes);
 #                     QUICK=1: small pictures, into BUILD/experiments (2 minutes)
 #   make prove-adding a new primitive in a copy of this tree: what it costs, and what is said when something is forgotten
+#   make graph        draws which folder includes which: BUILD/graph.svg, .png, .dot; FOLDERS="rayshade pvm scenes tests": all
+#
+# CXX=, OPTIMIZE= and EXTRA_FLAGS= hold for all files; who changes them builds anew.  V=1 shows whole commands.
+# As many jobs run as there are cores, unless -j says otherwise.
 #
 # Sources find themselves: a new file needs no edit here.  Every program is linked from one library of the same
 # object files, so every program does the same arithmetic.  Only the PVM programs link libpvm3.
+
+ifeq (,$(findstring -j,$(shell echo "$$MAKEFLAGS")))
+MAKEFLAGS += -j$(shell nproc 2>/dev/null || echo 2)
+endif
+MAKEFLAGS += --no-print-directory
 
 comma := ,
 CXX ?= g++
@@ -24,19 +33,21 @@ BUILD ?= build$(if $(SAN),-$(subst $(comma),-,$(SAN)))
 BIN ?= $(if $(SAN),$(BUILD)/bin,bin)
 PREFIX ?= /usr/local
 FUZZ_SECONDS ?= 60
-CLANG ?= clang++
-OPTIMIZE ?= -O2
-# g++ 12 sees uninitialised memory in std::regex and std::variant when it instruments them; clang knows no such warning.
-san_quiet := -Wno-unknown-warning-option -Wno-maybe-uninitialized
+CLANG ?= $(if $(findstring clang,$(CXX)),$(CXX),clang++)
 # -ffp-contract=off: a fused multiply-add would give other bits on machines that have one.
 # -Wno-psabi: wide vectors (rayshade/accel/simd.h) never leave the function that makes them.
-FLAGS := -std=c++20 $(OPTIMIZE) -g1 -Wall -Wextra -Werror -Wno-psabi -ffp-contract=off -I. \
-         $(if $(SAN),-fsanitize=$(SAN) -fno-sanitize-recover=all -fno-omit-frame-pointer $(san_quiet))
+# -Wno-maybe-uninitialized: g++ 12 sees uninitialised memory in std::regex and std::variant when it instruments them.
+FLAGS := -std=c++20 $(or $(OPTIMIZE),-O2) -g1 -Wall -Wextra -Werror -Wno-psabi -ffp-contract=off -I. \
+         $(if $(findstring clang,$(CXX)),-Wno-unknown-warning-option) $(if $(OPTIMIZE),-Wno-restrict) \
+         $(if $(SAN),-fsanitize=$(SAN) -fno-sanitize-recover=all -fno-omit-frame-pointer -Wno-maybe-uninitialized)
+# What runs for long is worth a tenth more.  -Wno-restrict: g++ 12 then sees overlaps in std::string that are not there (its
+# bug 105651).
+long_running := $(if $(OPTIMIZE)$(SAN),,-O3 -Wno-restrict)
 LIBRARIES := -lpng
 # One tree serves tests and fuzzers; it is the one that clang compiles, too.  What is left out crashes anyway (null),
 # does no harm here (alignment) or finds little; together they are a third of the time to compile.
-sanitized := SAN=address,undefined OPTIMIZE=-O1 CXX="$(CLANG)" \
-             EXTRA_FLAGS="-fsanitize=fuzzer-no-link -fno-sanitize=null,alignment,vptr,object-size"
+sanitized := SAN=address,undefined OPTIMIZE=$(or $(OPTIMIZE),-O1) CXX="$(CLANG)" \
+             EXTRA_FLAGS="$(EXTRA_FLAGS) -fsanitize=fuzzer-no-link -fno-sanitize=null,alignment,vptr,object-size"
 
 objects = $(patsubst %.cc,$(BUILD)/%.o,$(1))
 find_sources = $(sort $(shell find $(1) -name '*.cc'))
@@ -46,16 +57,16 @@ spd := $(call objects,$(filter-out scenes/spd/main.cc,$(call find_sources,scenes
 pvm_door := $(call objects,$(filter-out pvm/link/host_file.cc,$(call find_sources,pvm/link)))
 pvm_programs := $(call objects,pvm/program/main.cc pvm/program/host_program.cc)
 tasks := $(filter-out $(pvm_door) $(pvm_programs),$(call objects,$(call find_sources,pvm)))
-# Tests that need no PVM daemon make one program, those that do another one.
-pvm_tests := $(call objects,tests/parallel/pvm_test.cc tests/parallel/pvm_suite_test.cc)
-link_test := $(call objects,tests/parallel/link_test.cc)
-tests := $(filter-out $(pvm_tests) $(link_test),$(call objects,$(call find_sources,tests/unit tests/property tests/golden tests/parallel tests/fault tests/support) $(wildcard tests/fuzz/any_*.cc)))
-# What sanitizers are most likely to find fault with: whoever reads bytes of others or juggles tasks.
-guarded_tests := $(call objects,$(foreach name,archive expression fuzz_corpus image_file in_flight messages object_cache object_stream outbox parser shade_ledger spool tokens wire_format,tests/unit/$(name)_test.cc) \
-  tests/fault/fault_test.cc tests/parallel/equivalence_test.cc tests/parallel/schedules_test.cc \
-  $(filter-out tests/support/oracle.cc,$(call find_sources,tests/support)) $(wildcard tests/fuzz/any_*.cc))
-fuzzers := $(patsubst tests/fuzz/%.cc,$(BIN)/%,$(wildcard tests/fuzz/*_fuzz.cc))
+oracle := $(call objects,$(call find_sources,tests/support/oracle))
+support := $(filter-out $(oracle),$(call objects,$(call find_sources,tests/support)))
 fuzzed := $(call objects,$(wildcard tests/fuzz/any_*.cc))
+# Tests that need no PVM daemon make one program, those that do another one, and a third one plays several tasks itself.
+pvm_tests := $(call objects,$(wildcard tests/parallel/pvm_*test.cc))
+link_tests := $(call objects,$(wildcard tests/parallel/link_*test.cc))
+tests := $(filter-out $(pvm_tests) $(link_tests),$(call objects,$(call find_sources,tests/unit tests/property tests/golden tests/parallel tests/fault)))
+# What sanitizers are most likely to find fault with, because it reads bytes of others or juggles tasks, says so.
+guarded_tests := $(call objects,$(sort $(shell grep -rl --include='*_test.cc' '^// guarded: ' tests)))
+fuzzers := $(patsubst tests/fuzz/%.cc,$(BIN)/%,$(wildcard tests/fuzz/*_fuzz.cc))
 embree_bench := tests/bench/embree_rate.cc
 benches := $(patsubst tests/bench/%.cc,$(BIN)/bench/%,$(filter-out $(embree_bench),$(call find_sources,tests/bench)))
 
@@ -63,27 +74,42 @@ roles := host voxel-trace pyramid-trace shade
 programs := $(BIN)/rayshade $(BIN)/rayshade-error $(BIN)/spd $(roles:%=$(BIN)/rayshade-%)
 test_programs := $(BIN)/rayshade-tests $(BIN)/link-tests $(BIN)/pvm-tests
 
-.PHONY: all demo docs check check-sanitized test guarded install fuzz fuzzers bench benches bench-embree experiments prove-adding format clean packages
+.PHONY: all demo docs check check-sanitized build-tests test guarded install fuzz fuzzers bench benches bench-embree experiments prove-adding graph format clean packages always
 all: $(programs)
 
-# What runs for long is worth a tenth more.  -Wno-restrict: g++ 12 then sees overlaps in std::string that are not there (its
-# bug 105651).
-ifndef SAN
-$(core) $(tasks): FLAGS += -O3 -Wno-restrict
-endif
+# One short line for a command, or with V=1 the command.
+verbose := $(filter-out 0,$(V))
+say = $(if $(verbose),,@echo "  $(1)")
+quietly := $(if $(verbose),,@)
 
-$(BUILD)/%.o: %.cc
+# What was built with other flags is built again, and what held files that are gone.
+$(BUILD)/flags: now = $(strip $(filter-out ccache,$(CXX)) $(FLAGS) $(long_running) $(EXTRA_FLAGS))
+$(BUILD)/sources: now = $(core) $(tasks) $(spd) $(support) $(oracle) $(tests) $(pvm_tests) $(link_tests) $(guarded_tests)
+$(BUILD)/flags $(BUILD)/sources: always
 	@mkdir -p $(@D)
-	$(CXX) $(FLAGS) $(EXTRA_FLAGS) -MMD -MP -c $< -o $@
+	@echo '$(subst ','\'',$(now))' | cmp -s - $@ || echo '$(subst ','\'',$(now))' >$@
+
+$(core) $(tasks): private also := $(long_running)
+$(BUILD)/%.o: %.cc $(BUILD)/flags
+	@mkdir -p $(@D)
+	$(call say,compile $<)
+	$(quietly)$(CXX) $(FLAGS) $(also) $(EXTRA_FLAGS) -MMD -MP -c $< -o $@
 
 $(BUILD)/libcore.a: $(core)
 $(BUILD)/libtasks.a: $(tasks)
 $(BUILD)/libspd.a: $(spd)
-$(BUILD)/lib%.a:
+$(BUILD)/libsupport.a: $(support)
+$(BUILD)/lib%.a: $(BUILD)/sources
+	$(call say,collect $@)
 	@rm -f $@
-	ar rcs $@ $^
+	$(quietly)ar rcs $@ $(filter %.o,$^)
 
-link = @mkdir -p $(@D) && echo "link $@" && $(CXX) $(FLAGS) $(EXTRA_FLAGS) $(filter %.o,$^) $(filter %.a,$^) $(1) $(LIBRARIES) -o $@
+define link
+@mkdir -p $(@D)
+$(call say,link $@)
+$(quietly)$(CXX) $(FLAGS) $(EXTRA_FLAGS) $(filter %.o,$^) $(filter %.a,$^) $(1) $(LIBRARIES) -o $@
+endef
+libraries := $(BUILD)/libtasks.a $(BUILD)/libspd.a $(BUILD)/libcore.a
 
 $(BIN)/rayshade: $(BUILD)/rayshade/program/main.o $(BUILD)/libcore.a
 	$(call link)
@@ -95,34 +121,37 @@ $(BIN)/rayshade-host: $(pvm_programs) $(pvm_door) $(BUILD)/libtasks.a $(BUILD)/l
 	$(call link,-lpvm3)
 # The role of a task is the name under which it was started: one program, several names.
 $(BIN)/rayshade-voxel-trace $(BIN)/rayshade-pyramid-trace $(BIN)/rayshade-shade: $(BIN)/rayshade-host
-	ln -f $< $@
-$(BIN)/rayshade-tests: $(tests) $(BUILD)/libtasks.a $(BUILD)/libspd.a $(BUILD)/libcore.a
+	$(call say,link $@)
+	$(quietly)ln -f $< $@
+$(BIN)/rayshade-tests: $(tests) $(fuzzed) $(oracle) $(BUILD)/libsupport.a $(libraries)
 	$(call link,-lgtest -lgtest_main -lpthread)
-$(BIN)/guarded-tests: $(guarded_tests) $(BUILD)/libtasks.a $(BUILD)/libspd.a $(BUILD)/libcore.a
+$(BIN)/guarded-tests: $(guarded_tests) $(fuzzed) $(BUILD)/libsupport.a $(libraries)
 	$(call link,-lgtest -lgtest_main -lpthread)
-$(BIN)/link-tests: $(link_test) $(pvm_door) $(BUILD)/libtasks.a $(BUILD)/libcore.a
+$(BIN)/link-tests: $(link_tests) $(pvm_door) $(BUILD)/libsupport.a $(libraries)
 	$(call link,-lgtest -lpthread -lpvm3)
-$(BIN)/pvm-tests: $(pvm_tests) $(call objects,tests/support/program.cc tests/support/suite.cc) $(pvm_door) $(BUILD)/libtasks.a $(BUILD)/libcore.a
+$(BIN)/pvm-tests: $(pvm_tests) $(pvm_door) $(BUILD)/libsupport.a $(libraries)
 	$(call link,-lgtest -lgtest_main -lpthread -lpvm3)
-$(fuzzers): $(BIN)/%_fuzz: $(BUILD)/tests/fuzz/%_fuzz.o $(fuzzed) $(BUILD)/libtasks.a $(BUILD)/libcore.a
+$(test_programs) $(BIN)/guarded-tests: $(BUILD)/sources
+$(fuzzers): $(BIN)/%_fuzz: $(BUILD)/tests/fuzz/%_fuzz.o $(fuzzed) $(libraries)
 	$(call link,-fsanitize=fuzzer)
-$(BIN)/bench/oracle_fuzz: $(BUILD)/tests/support/oracle.o
-$(BIN)/bench/%: $(BUILD)/tests/bench/%.o $(pvm_door) $(BUILD)/libtasks.a $(BUILD)/libspd.a $(BUILD)/libcore.a
+$(BIN)/bench/oracle_fuzz: $(oracle)
+$(BIN)/bench/%: $(BUILD)/tests/bench/%.o $(pvm_door) $(BUILD)/libsupport.a $(libraries)
 	$(call link,-lbenchmark -lpthread -lpvm3)
 
 packages:
 	@tests/support/install_packages
 
 demo: packages
-	@$(MAKE) --no-print-directory -j2 all
+	@$(MAKE) all
 	@tests/support/demo $(BIN)
 
 check: packages
-	@$(MAKE) --no-print-directory -j2 SAN=$(SAN) test
+	@$(MAKE) test
 check-sanitized:
 	@tests/support/install_packages nice
-	@$(MAKE) --no-print-directory -j2 $(sanitized) guarded
-test: $(programs) $(test_programs)
+	@$(MAKE) $(sanitized) guarded
+build-tests: $(programs) $(test_programs)
+test: build-tests
 	@tests/support/run_tests $(BIN)
 
 # Sanitizers make tests eight times slower: fewer random scenes than without.
@@ -134,7 +163,7 @@ bench-embree: LIBRARIES += -lembree3
 bench-embree: $(BIN)/bench/embree_rate
 
 bench: $(BIN)/rayshade $(BIN)/rayshade-error $(BIN)/spd
-	@tests/bench/speed_and_error --bin $(BIN) docs
+	@PYTHONDONTWRITEBYTECODE=1 tests/bench/speed_and_error/run --bin $(BIN) docs
 
 experiments: all
 	@PYTHONDONTWRITEBYTECODE=1 tests/bench/experiments/run $(BIN) $(if $(QUICK),$(BUILD)/experiments --quick,docs/experiments)
@@ -142,8 +171,12 @@ experiments: all
 docs: all
 	@docs/generate --bin $(BIN)
 
+graph:
+	@tests/support/install_packages graph
+	@tests/support/draw_includes $(BUILD)/graph $(FOLDERS)
+
 fuzz:
-	@$(MAKE) --no-print-directory -j2 $(sanitized) fuzzers
+	@$(MAKE) $(sanitized) fuzzers
 	@tests/support/fuzz build-address-undefined/bin $(FUZZ_SECONDS)
 fuzzers: $(fuzzers)
 

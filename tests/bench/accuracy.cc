@@ -3,7 +3,7 @@
 //   accuracy [RAYS]          TSV on standard output; a million rays for each kernel, a tenth of them for the torus
 //
 // Shapes of about size 1 at the origin; rays come from 2 to 1e7 away (log-uniform) and aim at points in and around the shape, one in
-// four at an edge, a corner or a silhouette.  The truth is computed with 256 bits (tests/support/exact_geometry.h).
+// four at an edge, a corner or a silhouette.  The truth is computed with 256 bits (tests/support/oracle/exact_geometry.h).
 //
 //   ns          processor time per ray, the best of several turns over the first rays
 //   typical     median error of t, in units in the last place of the true t
@@ -12,7 +12,7 @@
 //   missed, phantom      per million rays: a hit that the kernel does not see, one that is not there
 //   wrong       per million rays: those of them, and those hits, that rounding of the numbers given cannot excuse: a point
 //               farther from the shape than the oracle's bound, nothing where the ray goes through it by more than that
-//               (tests/support/oracle.h)
+//               (tests/support/oracle/oracle.h)
 //
 // The textbook formulas live here only.  Sources: sphere, cylinder, cone, box: Haines, and Kay & Kajiya, in Glassner, An Introduction
 // to Ray Tracing, 1989, and as in Rayshade 4; triangle: Möller & Trumbore, JGT 2(1), 1997; torus: the quartic of the ray
@@ -24,8 +24,8 @@
 #include <cstdlib>
 #include <ctime>
 
-#include "rayshade/base/random.h"
-#include "tests/support/exact_geometry.h"
+#include "tests/support/oracle/exact_geometry.h"
+#include "tests/support/random.h"
 
 namespace rayshade {
 namespace {
@@ -145,31 +145,17 @@ double textbook(const Torus& torus, const LocalRay& ray) {  // axis z, centre at
 
 constexpr double kReach = 1.5;  // of all shapes here
 
-class Dice {
- public:
-  double between(double low, double high) {
-    return low + (high - low) * uniform(RandomKey{++count_}, Dimension::lensX);
-  }
-  Vec3 direction() {
-    const double z = between(-1, 1), turn = between(0, 6.283185307), r = std::sqrt(1 - z * z);
-    return {r * std::cos(turn), r * std::sin(turn), z};
-  }
-
- private:
-  std::uint64_t count_ = 0;
-};
-
 std::vector<LocalRay> raysAt(const std::vector<Vec3>& edges, std::size_t count) {
-  Dice dice;
+  Random random(1);
   std::vector<LocalRay> rays;
   while (rays.size() < count) {
-    Vec3 target = std::cbrt(dice.between(0, 1)) * 1.2 * dice.direction();
+    Vec3 target = std::cbrt(random.real()) * 1.2 * random.direction();
     if (!edges.empty() && rays.size() % 4 == 0) {
-      const auto i = static_cast<std::size_t>(dice.between(0, static_cast<double>(edges.size())));
+      const auto i = random.below(edges.size());
       const Vec3 a = edges[i], b = edges[(i + 1) % edges.size()];
-      target = a + (rays.size() % 8 == 0 ? 0 : dice.between(0, 1)) * (b - a);
+      target = a + (rays.size() % 8 == 0 ? 0 : random.real()) * (b - a);
     }
-    const Vec3 origin = target + std::exp(dice.between(std::log(2), std::log(1e7))) * dice.direction();
+    const Vec3 origin = target + random.magnitude(2, 1e7) * random.direction();
     rays.push_back({origin, normalize(target - origin)});
   }
   return rays;

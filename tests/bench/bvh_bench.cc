@@ -9,15 +9,10 @@
 #include <cmath>
 
 #include "rayshade/accel/bvh.h"
-#include "rayshade/base/random.h"
+#include "tests/support/random.h"
 
 namespace rayshade {
 namespace {
-
-double random(std::uint64_t i, std::uint32_t use) { return uniform(RandomKey{mixBits(i)}, Dimension{use}); }
-Vec3 randomPoint(std::uint64_t i, std::uint32_t use) {
-  return {random(i, use), random(i, use + 1), random(i, use + 2)};
-}
 
 struct Ball {
   Vec3 centre;
@@ -30,14 +25,18 @@ struct Facet {
 std::vector<Ball> balls(int n) {
   std::vector<Ball> list;
   const double size = 0.7 / std::cbrt(n);
-  for (int i = 0; i < n; ++i) list.push_back({randomPoint(i, 0), size * (0.2 + 0.8 * random(i, 3))});
+  Random random(1);
+  for (int i = 0; i < n; ++i) {
+    const Vec3 centre = random.point(0, 1);
+    list.push_back({centre, size * random.real(0.2, 1)});
+  }
   return list;
 }
 
 std::vector<Facet> terrain(int side) {
   const auto at = [&](int x, int y) {
     const double u = double(x) / side, v = double(y) / side;
-    return Vec3{u, v, 0.5 + 0.1 * std::sin(9 * u) * std::cos(7 * v) + 0.01 * random(x * 4096 + y, 0)};
+    return Vec3{u, v, 0.5 + 0.1 * std::sin(9 * u) * std::cos(7 * v) + 0.01 * Random(x * 4096 + y).real()};
   };
   std::vector<Facet> list;
   for (int x = 0; x < side; ++x)
@@ -85,8 +84,9 @@ struct Line {
 enum Rays { kScattered, kPicture };
 Line line(std::uint64_t i, Rays kind) {
   if (kind == kScattered) {
-    const Vec3 from = (randomPoint(i, 10) - Vec3{0.5, 0.5, 0.5}) * 2 + Vec3{0.5, 0.5, 0.5};
-    return {from, normalize(randomPoint(i, 20) - from)};
+    Random random(i);
+    const Vec3 from = random.point(-0.5, 1.5);
+    return {from, normalize(random.point(0, 1) - from)};
   }
   const double x = double(i % 512) / 512, y = double(i / 512 % 512) / 512;
   return {{0.5, -1.2, 1.1}, normalize(Vec3{1.4 * (x - 0.5), 1.5, 1.2 * (y - 0.5) - 0.6})};

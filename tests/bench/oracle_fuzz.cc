@@ -4,14 +4,14 @@
 //
 // One line per class: cases, cases per second, questions, share decided with 256 bits, failures, worst distance of a hit.
 // Failures are printed with all that is needed to repeat them: CLASS --seed S --first K --cases 1.
-// What a failure is: tests/support/oracle.h.  Exit status 1 when there was one.
+// What a failure is: tests/support/oracle/oracle.h.  Exit status 1 when there was one.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <charconv>
 #include <chrono>
 #include <cstdio>
 #include <cstring>
 
-#include "tests/support/oracle.h"
+#include "tests/support/oracle/oracle.h"
 
 namespace {
 

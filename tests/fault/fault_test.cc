@@ -3,6 +3,7 @@
 //
 // RAYSHADE_TEST_SEEDS=N makes N renders of each kind instead of the few hundred of every day.  A failure prints the
 // seed that repeats it.
+// guarded: juggles tasks
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
@@ -10,6 +11,7 @@
 #include <optional>
 
 #include "tests/support/compare_pictures.h"
+#include "tests/support/random.h"
 #include "tests/support/random_scene.h"
 #include "tests/support/render_text.h"
 
@@ -62,14 +64,14 @@ HostOptions host(std::uint32_t voxels, std::uint32_t shades, std::uint32_t windo
 }
 
 HostOptions randomHost(std::uint64_t seed) {
-  const std::uint64_t bits = mixBits(seed ^ 0x5eed);
-  constexpr std::uint32_t windows[] = {4, 16, 64, 4096};
-  HostOptions options = host(1 + static_cast<std::uint32_t>(bits % 4),
-                             1 + static_cast<std::uint32_t>(bits / 4 % 2), windows[bits / 8 % 4]);
-  options.voxelsPerTask = 1 + static_cast<std::uint32_t>(bits / 32 % 2);
-  options.wishes.pyramids = static_cast<std::uint32_t>(bits / 64 % 3);
-  options.policy.shadows = ShadowPolicy{static_cast<std::uint8_t>(bits / 384 % 3)};
-  options.wishes.clusters = 1 + static_cast<std::uint32_t>(bits / 192 % 2);
+  Random random(seed);
+  const auto from = [&](int low, int high) { return static_cast<std::uint32_t>(random.integer(low, high)); };
+  const std::uint32_t voxels = from(1, 4), shades = from(1, 2);
+  HostOptions options = host(voxels, shades, random.pick({4u, 16u, 64u, 4096u}));
+  options.voxelsPerTask = from(1, 2);
+  options.wishes.pyramids = from(0, 2);
+  options.policy.shadows = ShadowPolicy{static_cast<std::uint8_t>(from(0, 2))};
+  options.wishes.clusters = from(1, 2);
   return options;
 }
 
@@ -210,12 +212,9 @@ TEST(Fault, DeathWhileReportsAreAwaitedEndsTheRenderAllTheSame) {
 // A shipping of many batches, so that tasks die in the middle of it.
 TEST(Fault, DeathInTheMiddleOfALongShipping) {
   std::string text = "screen 8 6 sample 1 nojitter eyep 0 -30 0 ";
-  for (int i = 0; i < 6000; ++i) {
-    const std::uint64_t bits = mixBits(static_cast<std::uint64_t>(i));
-    text += "sphere .4 " + std::to_string(static_cast<int>(bits % 20) - 10) + " " +
-            std::to_string(static_cast<int>(bits / 20 % 20) - 10) + " " +
-            std::to_string(static_cast<int>(bits / 400 % 20) - 10) + "\n";
-  }
+  Random random(1);
+  const auto coordinate = [&] { return " " + std::to_string(random.integer(-10, 9)); };
+  for (int i = 0; i < 6000; ++i) text += "sphere .4" + coordinate() + coordinate() + coordinate() + "\n";
   const Job job = jobOfText(text);
   const Rendered expected = renderSequentially(job);
   for (std::uint64_t seed = 0; seed < 6; ++seed) {

@@ -2,10 +2,12 @@
 // bits of the sequential renderer's.
 //
 // RAYSHADE_TEST_SEEDS=N tries N random scenes instead of the few of every day.
+// guarded: juggles tasks
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
 #include "tests/support/compare_pictures.h"
+#include "tests/support/random.h"
 #include "tests/support/random_scene.h"
 #include "tests/support/render_text.h"
 #include "tests/support/suite.h"
@@ -28,16 +30,16 @@ std::ostream& operator<<(std::ostream& out, const Splitting& s) {
 }
 
 Splitting randomSplit(std::uint64_t seed) {
-  const std::uint64_t bits = mixBits(seed);
-  constexpr std::uint32_t windows[] = {1, 7, 256, 4096};
-  return {1 + static_cast<std::uint32_t>(bits % 8),
-          1 + static_cast<std::uint32_t>(bits / 8 % 3),
-          1 + static_cast<std::uint32_t>(bits / 24 % 3),
-          windows[bits / 72 % 4],
-          bits / 288,
-          static_cast<std::uint32_t>(bits / 288 % 3),
-          1 + static_cast<std::uint32_t>(bits / 864 % 2),
-          bits / 1728 % 2 == 0 ? Split::equal : Split::cost};
+  Random random(seed);
+  const auto from = [&](int low, int high) { return static_cast<std::uint32_t>(random.integer(low, high)); };
+  return {.voxelTasks = from(1, 8),
+          .voxelsPerTask = from(1, 3),
+          .shades = from(1, 3),
+          .window = random.pick({1u, 7u, 256u, 4096u}),
+          .delivery = random.bits(),
+          .pyramids = from(0, 2),
+          .clusters = from(1, 2),
+          .by = random.pick({Split::equal, Split::cost})};
 }
 
 RenderedByTasks renderSplit(const Job& job, const Splitting& split) {

@@ -1,23 +1,17 @@
-// PvmLink and VirtualMachine with a real PVM daemon, in a private virtual machine.
+// PvmLink with a real PVM daemon, in a private virtual machine.
 //
 // The workers are this same program, spawned with the argument "--worker"; so it has a main of its own.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 #include <signal.h>
-#include <sys/socket.h>
-#include <sys/un.h>
-#include <sys/wait.h>
 
 #include <chrono>
 #include <cstdio>
-#include <cstring>
 #include <deque>
 #include <fstream>
-#include <sstream>
 #include <thread>
 
 #include "pvm/link/pvm_link.h"
-#include "pvm/link/virtual_machine.h"
 #include "tests/support/private_machine.h"
 
 namespace rayshade {
@@ -106,11 +100,7 @@ std::optional<LinkEvent> next(PvmLink& link, LinkEvent::Kind kind, double patien
   return std::nullopt;
 }
 
-bool nothingLeft(const std::string& directory) {
-  return !std::filesystem::exists(directory) || std::filesystem::is_empty(directory);
-}
-
-class LinkTest : public testing::Test {
+class LinkOverPvm : public testing::Test {
  protected:
   void SetUp() override {
     if (!PrivateMachine::possible()) GTEST_SKIP() << PrivateMachine::kImpossible;
@@ -138,7 +128,7 @@ class LinkTest : public testing::Test {
   std::optional<PvmLink> link;
 };
 
-TEST_F(LinkTest, PacketsOfAllSizesComeBackUnchanged) {
+TEST_F(LinkOverPvm, PacketsOfAllSizesComeBackUnchanged) {
   const TaskId task = worker();
   for (const bool direct : {false, true}) {
     if (direct) {
@@ -158,7 +148,7 @@ TEST_F(LinkTest, PacketsOfAllSizesComeBackUnchanged) {
   EXPECT_EQ(link->refused(), 0u);
 }
 
-TEST_F(LinkTest, OrderIsKeptWhileARouteOpens) {
+TEST_F(LinkOverPvm, OrderIsKeptWhileARouteOpens) {
   const TaskId task = worker();
   constexpr std::uint32_t kCount = 1000;
   link->send(task, encode(Order{Ask::stream, kCount, {}}));
@@ -174,7 +164,7 @@ TEST_F(LinkTest, OrderIsKeptWhileARouteOpens) {
   EXPECT_TRUE(connected(task));
 }
 
-TEST_F(LinkTest, WorkersTalkToEachOther) {
+TEST_F(LinkOverPvm, WorkersTalkToEachOther) {
   const TaskId first = worker(), second = worker();
   for (const auto& [from, to] : {std::pair(first, second), std::pair(second, first)}) {
     for (int i = 0; i < 20; ++i) {
@@ -191,7 +181,7 @@ TEST_F(LinkTest, WorkersTalkToEachOther) {
   }
 }
 
-TEST_F(LinkTest, DeathIsToldOnceAndWithinASecond) {
+TEST_F(LinkOverPvm, DeathIsToldOnceAndWithinASecond) {
   for (const bool direct : {false, true}) {
     const TaskId task = worker();
     ASSERT_TRUE(answers(task));
@@ -211,7 +201,7 @@ TEST_F(LinkTest, DeathIsToldOnceAndWithinASecond) {
   }
 }
 
-TEST_F(LinkTest, TheLastPacketsOfATaskThatLeavesArriveBeforeItsDeath) {
+TEST_F(LinkOverPvm, TheLastPacketsOfATaskThatLeavesArriveBeforeItsDeath) {
   const TaskId task = worker();
   ASSERT_TRUE(connected(task));
   link->watch(task);
@@ -229,7 +219,7 @@ TEST_F(LinkTest, TheLastPacketsOfATaskThatLeavesArriveBeforeItsDeath) {
   EXPECT_GE(packets, kCount);
 }
 
-TEST_F(LinkTest, TheDeathOfOneThatIsDeadAlreadyIsTold) {
+TEST_F(LinkOverPvm, TheDeathOfOneThatIsDeadAlreadyIsTold) {
   const TaskId task = worker();
   ASSERT_TRUE(answers(task));
   link->kill(task);
@@ -240,7 +230,7 @@ TEST_F(LinkTest, TheDeathOfOneThatIsDeadAlreadyIsTold) {
   EXPECT_EQ(event->task, task);
 }
 
-TEST_F(LinkTest, ATaskThatHangsCanBeKilled) {
+TEST_F(LinkOverPvm, ATaskThatHangsCanBeKilled) {
   const TaskId task = worker();
   ASSERT_TRUE(answers(task));
   link->watch(task);
@@ -252,7 +242,7 @@ TEST_F(LinkTest, ATaskThatHangsCanBeKilled) {
   EXPECT_LT(link->now() - start, 1);
 }
 
-TEST_F(LinkTest, ConnectingToTheDeadDoesNotBlock) {
+TEST_F(LinkOverPvm, ConnectingToTheDeadDoesNotBlock) {
   const TaskId task = worker();
   ASSERT_TRUE(answers(task));
   link->kill(task);
@@ -265,7 +255,7 @@ TEST_F(LinkTest, ConnectingToTheDeadDoesNotBlock) {
   EXPECT_LT(link->now() - start, 1);
 }
 
-TEST_F(LinkTest, OutputOfWorkersComesToOurStderrWithoutMarks) {
+TEST_F(LinkOverPvm, OutputOfWorkersComesToOurStderrWithoutMarks) {
   const TaskId task = worker();
   link->watch(task);
   testing::internal::CaptureStderr();
@@ -278,7 +268,7 @@ TEST_F(LinkTest, OutputOfWorkersComesToOurStderrWithoutMarks) {
   EXPECT_EQ(text.find('['), std::string::npos) << text;
 }
 
-TEST_F(LinkTest, AMissingProgramIsNamedInTheProblem) {
+TEST_F(LinkOverPvm, AMissingProgramIsNamedInTheProblem) {
   link.emplace([](Role role) { return Command{std::string("/no/such/place/") + programName(role)}; });
   const Spawned spawned = link->spawn(Role::pyramidTrace, "");
   EXPECT_EQ(spawned.task, kNobody);
@@ -286,30 +276,30 @@ TEST_F(LinkTest, AMissingProgramIsNamedInTheProblem) {
       << spawned.problem;
 }
 
-TEST_F(LinkTest, AMissingHostIsNamedInTheProblem) {
+TEST_F(LinkOverPvm, AMissingHostIsNamedInTheProblem) {
   const Spawned spawned = link->spawn(Role::shade, "nosuchhost");
   EXPECT_EQ(spawned.task, kNobody);
   EXPECT_NE(spawned.problem.find("nosuchhost"), std::string::npos) << spawned.problem;
 }
 
-TEST_F(LinkTest, NoFileStaysAfterRoutesStood) {
+TEST_F(LinkOverPvm, NoFileStaysAfterRoutesStood) {
   const TaskId first = worker(), second = worker();
   ASSERT_TRUE(connected(first) && connected(second));
   link.reset();
   machine.halt();
-  EXPECT_TRUE(nothingLeft(machine.directory()));
+  EXPECT_TRUE(machine.nothingLeft());
 }
 
-TEST_F(LinkTest, TheOwnHostIsListedFirst) {
+TEST_F(LinkOverPvm, TheOwnHostIsListedFirst) {
   const auto hosts = link->hosts();
   ASSERT_EQ(hosts.size(), 1u);
   EXPECT_EQ(hosts[0].name, "localhost");
   EXPECT_EQ(hosts[0].speed, 1000);
 }
 
-TEST_F(LinkTest, TheFirstTaskHasNoParent) { EXPECT_EQ(link->parent(), kNobody); }
+TEST_F(LinkOverPvm, TheFirstTaskHasNoParent) { EXPECT_EQ(link->parent(), kNobody); }
 
-TEST_F(LinkTest, TheEndOfTheDaemonIsACleanFailure) {
+TEST_F(LinkOverPvm, TheEndOfTheDaemonIsACleanFailure) {
   std::ifstream in(machine.addressFile());
   std::string socket;
   std::getline(in, socket);
@@ -322,7 +312,7 @@ TEST_F(LinkTest, TheEndOfTheDaemonIsACleanFailure) {
       LinkLost);
 }
 
-TEST_F(LinkTest, TheEndOfALinkEndsItsWorkers) {
+TEST_F(LinkOverPvm, TheEndOfALinkEndsItsWorkers) {
   const TaskId task = worker();
   ASSERT_TRUE(answers(task));
   link->send(task, encode(Order{Ask::hang, 0, {}}));
@@ -332,138 +322,6 @@ TEST_F(LinkTest, TheEndOfALinkEndsItsWorkers) {
   const double start = link->now();
   EXPECT_TRUE(next(*link, LinkEvent::Kind::taskExit));
   EXPECT_LT(link->now() - start, 1);
-}
-
-class MachineTest : public testing::Test {
- protected:
-  void SetUp() override {
-    if (!PrivateMachine::possible()) GTEST_SKIP() << PrivateMachine::kImpossible;
-  }
-  PrivateMachine machine;
-};
-
-TEST_F(MachineTest, HaltLeavesNoFileAndNoDaemon) {
-  machine.start();
-  EXPECT_EQ(lookForMachine(), MachineState::alive);
-  machine.halt();
-  EXPECT_EQ(lookForMachine(), MachineState::none);
-  EXPECT_TRUE(nothingLeft(machine.directory()));
-}
-
-TEST_F(MachineTest, WorkersThatDoNotListenEndToo) {
-  machine.start();
-  Command command{"/bin/sh", "-c", "echo $$ > " + machine.directory() + "/worker; exec sleep 60"};
-  {
-    PvmLink link([&](Role) { return command; });
-    ASSERT_NE(link.spawn(Role::shade, "").task, kNobody);
-    link.wait(0.2);
-  }
-  pid_t pid = 0;
-  std::ifstream(machine.directory() + "/worker") >> pid;
-  ASSERT_GT(pid, 0);
-  machine.halt();
-  std::this_thread::sleep_for(std::chrono::milliseconds(50));
-  std::string state;
-  std::ifstream(std::string("/proc/") + std::to_string(pid) + "/stat") >> state >> state >> state;
-  EXPECT_TRUE(state.empty() || state == "Z") << state;  // nobody may have collected it yet
-}
-
-TEST_F(MachineTest, AMachineThatIsThereIsUsedAndLeftAlone) {
-  EXPECT_TRUE(machine.start().startedHere());
-  {
-    const VirtualMachine second{MachineOptions{}};
-    EXPECT_FALSE(second.startedHere());
-  }
-  EXPECT_EQ(lookForMachine(), MachineState::alive);
-}
-
-// A socket at which somebody listens, or has listened until he ended.
-int listenAt(const std::string& path) {
-  sockaddr_un address{};
-  address.sun_family = AF_UNIX;
-  std::strncpy(address.sun_path, path.c_str(), sizeof address.sun_path - 1);
-  const int listener = socket(AF_UNIX, SOCK_STREAM, 0);
-  EXPECT_EQ(bind(listener, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
-  EXPECT_EQ(listen(listener, 5), 0);
-  return listener;
-}
-
-TEST_F(MachineTest, AStaleAddressFileIsSurvivedQuickly) {
-  const std::string socketName = machine.directory() + "/pvmtmp1.0";
-  close(listenAt(socketName));
-  std::ofstream(machine.addressFile()) << socketName << "\n";
-  EXPECT_EQ(lookForMachine(), MachineState::stale);
-  const auto start = std::chrono::steady_clock::now();
-  EXPECT_TRUE(machine.start().startedHere());
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(2));
-  machine.halt();
-  EXPECT_TRUE(nothingLeft(machine.directory()));
-}
-
-// The daemon of an added host goes into the background: its socket has the number of a process that has ended.
-TEST_F(MachineTest, ASocketOfTheEndedGoesOnlyWhenNobodyListens) {
-  const pid_t ended = fork();
-  if (ended == 0) _exit(0);
-  waitpid(ended, nullptr, 0);
-  const std::string prefix = machine.directory() + "/pvmtmp" + std::to_string(ended);
-  const int daemon = listenAt(prefix + ".0");
-  close(listenAt(prefix + ".1"));
-  removeRouteSockets();
-  EXPECT_TRUE(std::filesystem::exists(prefix + ".0"));
-  EXPECT_FALSE(std::filesystem::exists(prefix + ".1"));
-  close(daemon);
-}
-
-TEST_F(MachineTest, AnEmptyPvmsockMeansNone) {
-  setenv("PVMSOCK", "", 1);
-  EXPECT_TRUE(machine.start().startedHere());
-  EXPECT_EQ(lookForMachine(), MachineState::alive);
-  EXPECT_EQ(std::getenv("PVMSOCK"), nullptr);
-}
-
-TEST_F(MachineTest, AStaleAddressFileCannotMakeUsRemoveAnotherFile) {
-  const std::string precious = machine.directory() + "/precious";
-  std::ofstream(precious) << "1";
-  std::ofstream(machine.addressFile()) << precious << "\n";
-  machine.start();
-  EXPECT_TRUE(std::filesystem::exists(precious));
-}
-
-TEST_F(MachineTest, AHostThatDoesNotJoinIsNamedUnlessItMay) {
-  const std::string file = machine.directory() + "/hosts";
-  std::ofstream(file) << "# ours\nlocalhost\nnosuchhost ep=/x\n";
-  try {
-    machine.start({file, false});
-    FAIL() << "nosuchhost has joined";
-  } catch (const MachineError& error) {
-    EXPECT_NE(std::string(error.what()).find("nosuchhost"), std::string::npos) << error.what();
-    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
-  }
-  EXPECT_EQ(lookForMachine(), MachineState::none);
-  EXPECT_EQ(machine.start({file, true}).missingHosts(), std::vector<std::string>{"nosuchhost"});
-}
-
-TEST_F(MachineTest, ThisMachineIsInARunningOneUnderAnyOfItsNames) {
-  const std::string running = machine.directory() + "/running", wanted = machine.directory() + "/wanted";
-  std::ofstream(running) << "127.0.0.1\n";
-  std::ofstream(wanted) << "localhost\n";
-  EXPECT_TRUE(machine.start({running, false}).startedHere());
-  VirtualMachine second({wanted, false});
-  EXPECT_FALSE(second.startedHere());
-  EXPECT_TRUE(second.missingHosts().empty());
-}
-
-TEST_F(MachineTest, AHostFileThatIsNotThereIsAnError) {
-  EXPECT_THROW(machine.start({"/no/such/file", false}), MachineError);
-}
-
-TEST(HostFile, DefaultsStandBeforeTheOptionsOfAHost) {
-  std::istringstream in("# comment\nalpha sp=2\n* ep=/build wd=/tmp\n\nbeta sp=3\n& gamma\n  delta\n");
-  const auto hosts = readHostFile(in);
-  ASSERT_EQ(hosts.size(), 3u);
-  EXPECT_EQ(hosts[0].name + "|" + hosts[0].options, "alpha|sp=2");
-  EXPECT_EQ(hosts[1].name + "|" + hosts[1].options, "beta|ep=/build wd=/tmp sp=3");
-  EXPECT_EQ(hosts[2].name + "|" + hosts[2].options, "delta|ep=/build wd=/tmp");
 }
 
 TEST(NoMachine, ALinkWithoutAMachineSaysSoAtOnce) {

@@ -1,10 +1,12 @@
 // What travels, rays or objects, and how far pyramids go, is a question of time: the picture has the same bits.
 //
 // RAYSHADE_TEST_SEEDS=N tries N random scenes instead of the few of every day.
+// guarded: juggles tasks
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
 #include "tests/support/compare_pictures.h"
+#include "tests/support/random.h"
 #include "tests/support/random_scene.h"
 #include "tests/support/render_text.h"
 #include "tests/support/suite.h"
@@ -12,45 +14,33 @@
 namespace rayshade {
 namespace {
 
-// Takes a few bits at a time.
-struct Dice {
-  std::uint64_t state;
-  std::uint32_t below(std::uint32_t n) {
-    state = mixBits(state);
-    return static_cast<std::uint32_t>(state % n);
-  }
-  template <class T>
-  T one(std::initializer_list<T> of) {
-    return of.begin()[below(static_cast<std::uint32_t>(of.size()))];
-  }
-};
-
 HostOptions randomSchedule(std::uint64_t seed) {
-  Dice dice{mixBits(seed)};
+  Random random(seed);
+  const auto from = [&](int low, int high) { return static_cast<std::uint32_t>(random.integer(low, high)); };
   HostOptions host;
-  host.wishes.voxels = 1 + dice.below(4);
-  host.wishes.pyramids = dice.below(4);
-  host.wishes.shades = 1 + dice.below(2);
-  host.wishes.clusters = 1 + dice.below(3);
-  host.voxelsPerTask = 1 + dice.below(2);
-  host.window = dice.one({5u, 300u, 4096u});
-  host.cells = dice.one({1u, 8u, 60u, 400u});
-  host.tileSamples = dice.one({1u, 16u, 256u});
-  host.dynamicShading = dice.below(4) == 0;
-  host.split = dice.one({Split::equal, Split::cost});
+  host.wishes.voxels = from(1, 4);
+  host.wishes.pyramids = from(0, 3);
+  host.wishes.shades = from(1, 2);
+  host.wishes.clusters = from(1, 3);
+  host.voxelsPerTask = from(1, 2);
+  host.window = random.pick({5u, 300u, 4096u});
+  host.cells = random.pick({1u, 8u, 60u, 400u});
+  host.tileSamples = random.pick({1u, 16u, 256u});
+  host.dynamicShading = random.oneIn(4);
+  host.split = random.pick({Split::equal, Split::cost});
   DemandPolicy& policy = host.policy;
-  policy.shadows = dice.one({ShadowPolicy::forward, ShadowPolicy::local, ShadowPolicy::automatic});
-  policy.secondariesTravel = dice.below(3) != 0;
-  policy.shadeLocally = dice.below(2) == 0;
+  policy.shadows = random.pick({ShadowPolicy::forward, ShadowPolicy::local, ShadowPolicy::automatic});
+  policy.secondariesTravel = !random.oneIn(3);
+  policy.shadeLocally = random.oneIn(2);
   policy.cacheBytes =
-      dice.one<std::uint64_t>({0, 1, 20'000, 1 << 26});  // none, no room for any cell, a few, all
-  policy.outstanding = dice.one({1u, 64u});
-  policy.horizon = dice.one<Horizon>({{Horizon::Kind::automatic, 0},
-                                      {Horizon::Kind::cells, 0},
-                                      {Horizon::Kind::cells, 3},
-                                      {Horizon::Kind::cells, 1e9},
-                                      {Horizon::Kind::distance, 0},
-                                      {Horizon::Kind::distance, 8}});
+      random.pick<std::uint64_t>({0, 1, 20'000, 1 << 26});  // none, no room for any cell, a few, all
+  policy.outstanding = random.pick({1u, 64u});
+  policy.horizon = random.pick<Horizon>({{Horizon::Kind::automatic, 0},
+                                         {Horizon::Kind::cells, 0},
+                                         {Horizon::Kind::cells, 3},
+                                         {Horizon::Kind::cells, 1e9},
+                                         {Horizon::Kind::distance, 0},
+                                         {Horizon::Kind::distance, 8}});
   return host;
 }
 

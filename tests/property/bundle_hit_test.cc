@@ -9,15 +9,15 @@
 
 #include "rayshade/intersect/ray_hit.h"
 #include "rayshade/trace/render.h"
-#include "tests/support/numbers.h"
 #include "tests/support/random_scene.h"
 #include "tests/support/render_text.h"
+#include "tests/support/seeded_random.h"
 
 namespace rayshade {
 namespace {
 
 // Rays from one point into directions that differ by `spread`; each component may be exactly 0.
-std::vector<Ray> raysOf(Numbers& numbers, std::size_t count, double spread) {
+std::vector<Ray> raysOf(Random& numbers, std::size_t count, double spread) {
   std::vector<Ray> rays(count);
   const Vec3 eye = numbers.point(-8, 8), middle = numbers.point(-1, 1);
   for (Ray& ray : rays) {
@@ -56,7 +56,7 @@ TEST(Bundle, EveryRayFindsWhatItFindsAlone) {
     scene.settings = head.settings;
     scene.prepare(exposureOf(head.picture, 0));
     const Region& space = *scene.region(0, 1, RayKind::nearest).region;
-    Numbers numbers(seed);
+    SeededRandom numbers(seed);
     for (std::size_t round = 0; round < 24; ++round) {
       const double spreads[] = {0.01, 0.3, 3};
       const std::vector<Ray> rays =

@@ -10,8 +10,8 @@
 
 #include "rayshade/trace/render.h"
 #include "rayshade/trace/trace_rays.h"
-#include "tests/support/numbers.h"
 #include "tests/support/render_text.h"
+#include "tests/support/seeded_random.h"
 
 namespace rayshade {
 namespace {
@@ -73,7 +73,7 @@ TEST(CutPlane, WhatEndsAtACutIsFoundOnBothSides) {
         job.read(cut[i].model.store());
         cut[i].prepare({}, 2u << i);
       }
-      Numbers numbers(static_cast<std::uint64_t>(off * 1e18) + (side > 0));
+      SeededRandom numbers(static_cast<std::uint64_t>(off * 1e18) + (side > 0));
       for (int n = 0; n < 20000; ++n) {
         Ray ray;
         ray.origin = numbers.point(-20, 20);

@@ -15,8 +15,8 @@
 #include "rayshade/space/walk.h"
 #include "rayshade/trace/scene.h"
 #include "rayshade/trace/trace_shadows.h"
-#include "tests/support/numbers.h"
 #include "tests/support/random_scene.h"
+#include "tests/support/seeded_random.h"
 
 namespace rayshade {
 namespace {
@@ -69,7 +69,7 @@ class Task final : public LocalSpace {
     for (std::size_t v = 0; v < held.size(); ++v)
       regions_.push_back(held[v] ? scene.model().regionOf(scene.inVoxel[v]) : Region{});
   }
-  static Task random(const CutScene& scene, Numbers& numbers, double share, bool fetches) {
+  static Task random(const CutScene& scene, Random& numbers, double share, bool fetches) {
     std::vector<bool> held(voxelCount(scene.tree));
     for (std::size_t v = 0; v < held.size(); ++v) held[v] = numbers.real(0, 1) < share;
     return Task(scene, std::move(held), fetches);
@@ -127,7 +127,7 @@ class Task final : public LocalSpace {
   std::vector<std::unique_ptr<Fetched>> cells_;
 };
 
-std::vector<Ray> randomBundle(Numbers& numbers, std::size_t count) {
+std::vector<Ray> randomBundle(Random& numbers, std::size_t count) {
   std::vector<Ray> rays(count);
   const Vec3 eye = numbers.point(-7, 7);
   const double spread = numbers.real(0, 1) < 0.5 ? 0.1 : 3;
@@ -165,7 +165,7 @@ TEST(LocalSpace, WhatIsResolvedIsRight) {
   std::size_t hits = 0, open = 0, misses = 0;
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
     CutScene scene(seed);
-    Numbers numbers(seed + 1000);
+    SeededRandom numbers(seed + 1000);
     Task task = Task::random(scene, numbers, std::array{0.0, 0.5, 0.9, 1.0}[seed % 4], seed % 3 != 0);
     for (std::uint32_t c = 0; seed % 3 != 0 && c < cellCount(scene.tree); ++c)
       if (numbers.real(0, 1) < 0.6) task.fetch(CellId{c});
@@ -194,7 +194,7 @@ TEST(LocalSpace, FetchingWhatIsMissingFindsTheSame) {
   std::size_t fetched = 0, hits = 0;
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
     CutScene scene(seed);
-    Numbers numbers(seed);
+    SeededRandom numbers(seed);
     Task task = Task::random(scene, numbers, 0.4, true);
     for (int n = 0; n < 25; ++n) {
       SCOPED_TRACE(testing::Message() << "seed " << seed << " ray " << n);
@@ -232,7 +232,7 @@ TEST(LocalSpace, HandingRaysOnFindsTheSame) {
   std::size_t handedOn = 0;
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
     CutScene scene(seed);
-    Numbers numbers(seed + 2000);
+    SeededRandom numbers(seed + 2000);
     std::vector<Task> tasks = sharedOut(scene, 2 + seed % 3);
     for (int n = 0; n < 25; ++n) {
       SCOPED_TRACE(testing::Message() << "seed " << seed << " ray " << n);
@@ -267,7 +267,7 @@ Shadow traceShadow(LocalSpace& space, const ShadowRay& shadow, double begin, con
   return {through, open[0]};
 }
 
-ShadowRay randomShadow(Numbers& numbers) {
+ShadowRay randomShadow(Random& numbers) {
   ShadowRay shadow;
   shadow.ray = randomBundle(numbers, 1)[0];
   shadow.distance = numbers.real(0, 1) < 0.3 ? kInfinity : numbers.real(0, 12);
@@ -279,7 +279,7 @@ TEST(LocalSpace, ShadowsAreTheSameHoweverTheyAreTraced) {
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
     CutScene scene(seed);
     const SceneSettings& settings = scene.whole.settings;
-    Numbers numbers(seed + 3000);
+    SeededRandom numbers(seed + 3000);
     Task fetching = Task::random(scene, numbers, 0.4, true);
     std::vector<Task> tasks = sharedOut(scene, 2 + seed % 3);
     for (int n = 0; n < 25; ++n) {

@@ -7,25 +7,11 @@
 
 #include "rayshade/intersect/csg.h"
 #include "rayshade/intersect/ray_hit.h"
+#include "tests/support/seeded_random.h"
 #include "tests/support/text_arguments.h"
 
 namespace rayshade {
 namespace {
-
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : state_(mixBits(seed)) {}
-  double real(double low, double high) {
-    state_ = mixBits(state_);
-    return low + (high - low) * static_cast<double>(state_ >> 11) * 0x1p-53;
-  }
-  std::uint32_t below(std::uint32_t n) { return static_cast<std::uint32_t>(real(0, n)); }
-  bool oneIn(std::uint32_t n) { return below(n) == 0; }
-  Vec3 point(double low, double high) { return {real(low, high), real(low, high), real(low, high)}; }
-
- private:
-  std::uint64_t state_;
-};
 
 // All examples of the shapes, but those that read files.
 std::vector<AnyShape> exampleShapes() {
@@ -63,7 +49,7 @@ class SceneMaker {
     object.container = container;
     const std::uint32_t kind = random_.below(10);
     if (kind == 0 && !definitions_.empty()) {
-      object.body = Instance{definitions_[random_.below(static_cast<std::uint32_t>(definitions_.size()))]};
+      object.body = Instance{random_.pick(definitions_)};
     } else if (kind == 1) {
       const DefinitionId operands{next_++};
       solid(operands);
@@ -87,11 +73,11 @@ class SceneMaker {
     if (random_.oneIn(3)) return Sphere{at, 0.25 * (1 + random_.below(6))};
     if (random_.oneIn(3))
       return Triangle{{at, at + Vec3{2, 0, 0}, at + Vec3{0, 2, double(random_.below(2))}}};
-    return examples[random_.below(static_cast<std::uint32_t>(examples.size()))];
+    return random_.pick(examples);
   }
   void place(SceneObject& object) {
     object.id = ObjectId{next_++};
-    object.surface = SurfaceId{random_.below(2)};
+    object.surface = SurfaceId{random_.below(2u)};
     if (random_.oneIn(2)) {
       SceneNode node;
       node.transforms.append(rotation(random_.point(-1, 1), random_.real(0, 360)));
@@ -136,10 +122,10 @@ bool mayBeTransparent(const Model& model, ObjectIndex index) {
   return model.store().surfaceOrDefault(object.surface).transparency >= kNegligible;
 }
 
-TEST(ModelProperty, VisitAndObstructionFindWhatATestOfEveryObjectFinds) {
+TEST(Model, VisitAndObstructionFindWhatATestOfEveryObjectFinds) {
   int hits = 0, ties = 0, dark = 0;
   for (std::uint64_t scene = 0; scene < 150; ++scene) {
-    Random random(scene);
+    SeededRandom random(scene);
     Model model;
     SceneMaker(random, model);
     const auto objects = model.store().objectsOf(kWorld);

@@ -1,6 +1,6 @@
 // A slice of what tests/bench/oracle_fuzz.cc does at length: kernels against the exact answer.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tests/support/oracle.h"
+#include "tests/support/oracle/oracle.h"
 
 #include <gtest/gtest.h>
 

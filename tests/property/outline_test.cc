@@ -7,30 +7,29 @@
 #include <numbers>
 
 #include "rayshade/shapes/polygon.h"
+#include "tests/support/seeded_random.h"
 
 namespace rayshade {
 namespace {
 
-double next(std::uint64_t& state) {
-  state = mixBits(state);
-  return static_cast<double>(state >> 11) * 0x1p-52 - 1;
-}
-
 // Gears, stars, needles and outlines that cross themselves, in any plane, a little off it or far away.
-Polygon somePolygon(std::uint64_t& state) {
-  const int corners = 9 + static_cast<int>((next(state) + 1) * 80);
-  const double scale = std::ldexp(1.0, static_cast<int>(next(state) * 40));
-  const Vec3 normal = normalize({next(state), next(state), next(state)});
+Polygon somePolygon(Random& random) {
+  const int corners = random.integer(9, 168);
+  const double scale = std::ldexp(1.0, random.integer(-40, 40));
+  const Vec3 normal = random.direction();
   const Basis basis = basisAround(normal);
-  const Vec3 centre = next(state) > 0 ? Vec3{next(state), next(state), next(state)} * 100 : Vec3{};
-  const double wobble = next(state) > 0.5 ? 1e-6 : 0, ragged = next(state), turns = next(state) > 0.5 ? 2 : 1;
+  const Vec3 centre = random.chance(0.5) ? random.point(-100, 100) : Vec3{};
+  const double wobble = random.chance(0.25) ? 1e-6 : 0, ragged = random.real(-1, 1),
+               turns = random.chance(0.25) ? 2 : 1;
   Polygon polygon;
   polygon.corners.clear();
   for (int i = 0; i < corners; ++i) {
     const double angle = turns * 2 * std::numbers::pi * i / corners;
-    const double radius = ragged > 0.3 ? 1 + 0.8 * next(state) : ragged > -0.3 ? (i & 2 ? 0.8 : 1.0) : 1.0;
+    const double radius = ragged > 0.3    ? 1 + 0.8 * random.real(-1, 1)
+                          : ragged > -0.3 ? (i & 2 ? 0.8 : 1.0)
+                                          : 1.0;
     const Vec3 corner = centre + radius * (std::cos(angle) * basis.first + std::sin(angle) * basis.second) +
-                        wobble * next(state) * normal;
+                        wobble * random.real(-1, 1) * normal;
     polygon.corners.push_back(corner * scale);
   }
   polygon.normal = normal;
@@ -39,27 +38,24 @@ Polygon somePolygon(std::uint64_t& state) {
 }
 
 TEST(Outline, AnswersAsTheExactTestDoes) {
-  std::uint64_t state = 7;
+  SeededRandom random(7);
   int hits = 0, unsure = 0, asked = 0;
   for (int scene = 0; scene < 300; ++scene) {
-    const Polygon polygon = somePolygon(state);
+    const Polygon polygon = somePolygon(random);
     ASSERT_NE(polygon.outline, nullptr);
     Polygon slow = polygon;
     slow.outline = nullptr;
     const double size = maxAbs(polygon.bounds().size());
     for (int i = 0; i < 200; ++i) {
-      const auto pick = [&] {
-        return polygon.corners[static_cast<std::size_t>((next(state) + 1) / 2 *
-                                                        static_cast<double>(polygon.corners.size()))];
-      };
+      const auto pick = [&] { return random.pick(polygon.corners); };
       // A third at points of the plane, a third at corners, a third at edges.
       Vec3 target = pick() * 0.3 + pick() * 0.3 + pick() * 0.4;
       if (i % 3 == 1) target = pick();
       if (i % 3 == 2) target = polygon.corners[0] * 0.25 + polygon.corners[1] * 0.75;
       const double steepness = i % 5 == 0 ? 1e-6 : 1;
-      const Vec3 away{next(state), next(state), next(state)};
-      const Vec3 from =
-          target + (polygon.normal * (steepness * next(state)) + away) * (size * (i % 7 == 0 ? 1e5 : 1));
+      const Vec3 away = random.point(-1, 1);
+      const Vec3 from = target + (polygon.normal * (steepness * random.real(-1, 1)) + away) *
+                                     (size * (i % 7 == 0 ? 1e5 : 1));
       const LocalRay ray{from, normalize(target - from), 1};
       const double t = polygon.intersect(ray, 0);
       ASSERT_EQ(t, slow.intersect(ray, 0)) << "scene " << scene << " ray " << i;

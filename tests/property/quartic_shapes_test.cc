@@ -10,37 +10,16 @@
 #include <cmath>
 #include <vector>
 
-#include "rayshade/base/random.h"
 #include "rayshade/shapes/blob.h"
 #include "rayshade/shapes/height_field.h"
 #include "rayshade/shapes/torus.h"
+#include "tests/support/seeded_random.h"
+#include "tests/support/shape_subjects.h"
 
 namespace rayshade {
 namespace {
 
 using Wide = __float128;
-
-struct Dice {
-  std::uint64_t state;
-  double operator()(double low, double high) {
-    state = mixBits(state);
-    return low + (high - low) * static_cast<double>(state >> 11) * 0x1p-53;
-  }
-  Vec3 direction() {
-    for (;;) {
-      const Vec3 v{(*this)(-1, 1), (*this)(-1, 1), (*this)(-1, 1)};
-      if (dot(v, v) < 1 && dot(v, v) > 0.01) return normalize(v);
-    }
-  }
-};
-
-template <class S>
-std::vector<double> crossings(const S& shape, const LocalRay& ray) {
-  std::vector<double> all;
-  for (double t = shape.intersect(ray, -1e300); t != kNoHit && all.size() < 100; t = shape.intersect(ray, t))
-    all.push_back(t);
-  return all;
-}
 
 Wide magnitude(Wide x) { return x < 0 ? -x : x; }
 
@@ -116,20 +95,20 @@ bool grazes(const std::vector<double>& exact, const std::vector<double>& found, 
   return false;
 }
 
-TEST(Torus, agreesWithSturmFromAnyDistance) {
-  Dice dice{1};
+TEST(Torus, AgreesWithSturmFromAnyDistance) {
+  SeededRandom random(1);
   int grazing = 0, crossed = 0;
   for (const double tube : {0.01, 0.25, 1.5}) {
     for (const double distance : {0.5, 5.0, 500.0, 5000.0, 50000.0}) {
       for (int i = 0; i < 40; ++i) {
         const Torus torus{1, tube, {}, {0, 0, 1}};
-        const double angle = dice(0, 6.283185307179586);
-        const double beside = tube * dice(-1.2, 1.2);
+        const double angle = random.real(0, 6.283185307179586);
+        const double beside = tube * random.real(-1.2, 1.2);
         const Vec3 target{(1 + beside) * std::cos(angle), (1 + beside) * std::sin(angle),
-                          tube * dice(-1.1, 1.1)};
-        const Vec3 direction = dice.direction();
+                          tube * random.real(-1.1, 1.1)};
+        const Vec3 direction = random.direction();
         const LocalRay ray{target - distance * direction, direction, 1};
-        const std::vector<double> found = crossings(torus, ray);
+        const std::vector<double> found = crossingsOfTheLine(torus, ray);
         std::vector<double> exact;
         SturmChain(exactQuartic(torus, ray, distance)).collect(-4 * (1 + tube), 4 * (1 + tube), 1e-13, exact);
         for (double& t : exact) t += distance;
@@ -160,14 +139,14 @@ double distanceTo(const Torus& torus, Vec3 p) {
   return static_cast<double>(std::min(magnitude(near - torus.tube), magnitude(far - torus.tube)));
 }
 
-TEST(Torus, pointsAreOnTheSurfaceAndARayFromThereFindsTheWayOut) {
-  Dice dice{2};
+TEST(Torus, PointsAreOnTheSurfaceAndARayFromThereFindsTheWayOut) {
+  SeededRandom random(2);
   for (const double tube : {1e-6, 1e-4, 0.01, 0.25, 1.5}) {
     const Torus torus{1, tube, {}, {0, 0, 1}};
     for (int i = 0; i < 300; ++i) {
-      const double angle = dice(0, 6.283185307179586);
-      const Vec3 inside{std::cos(angle), std::sin(angle), tube * dice(-0.7, 0.7)};
-      const Vec3 direction = dice.direction();
+      const double angle = random.real(0, 6.283185307179586);
+      const Vec3 inside{std::cos(angle), std::sin(angle), tube * random.real(-0.7, 0.7)};
+      const Vec3 direction = random.direction();
       const LocalRay ray{inside - 6 * direction, direction, 1};
       const double t = torus.intersect(ray, 0);
       ASSERT_NE(t, kNoHit);
@@ -200,22 +179,22 @@ Wide densityAt(const Blob& blob, const LocalRay& ray, double t) {
   return sum;
 }
 
-Blob randomBlob(Dice& dice, int balls) {
-  Blob blob{dice(0.2, 0.9), {}};
+Blob randomBlob(Random& random, int balls) {
+  Blob blob{random.real(0.2, 0.9), {}};
   for (int i = 0; i < balls; ++i)
-    blob.balls.push_back({{dice(-1, 1), dice(-1, 1), dice(-1, 1)}, dice(0.3, 0.9), dice(0.3, 1.5)});
+    blob.balls.push_back({random.point(-1, 1), random.real(0.3, 0.9), random.real(0.3, 1.5)});
   return blob;
 }
 
-TEST(Blob, crossingsAreWhereTheDensityChangesSidesAndNowhereElse) {
-  Dice dice{3};
+TEST(Blob, CrossingsAreWhereTheDensityChangesSidesAndNowhereElse) {
+  SeededRandom random(3);
   int hits = 0;
   for (int i = 0; i < 250; ++i) {
-    const Blob blob = randomBlob(dice, 1 + i % 9);
-    const Vec3 direction = dice.direction(), target{dice(-1, 1), dice(-1, 1), dice(-1, 1)};
+    const Blob blob = randomBlob(random, 1 + i % 9);
+    const Vec3 direction = random.direction(), target = random.point(-1, 1);
     const double distance = i % 3 == 0 ? 3 : i % 3 == 1 ? 300 : 50000;
     const LocalRay ray{target - distance * direction, direction, 1};
-    const std::vector<double> found = crossings(blob, ray);
+    const std::vector<double> found = crossingsOfTheLine(blob, ray);
     hits += static_cast<int>(found.size());
     bool inside = false;
     std::size_t next = 0;
@@ -232,11 +211,11 @@ TEST(Blob, crossingsAreWhereTheDensityChangesSidesAndNowhereElse) {
   EXPECT_GT(hits, 100);
 }
 
-TEST(Blob, pointsAreOnTheSkinWithinTheirError) {
-  Dice dice{4};
+TEST(Blob, PointsAreOnTheSkinWithinTheirError) {
+  SeededRandom random(4);
   for (int i = 0; i < 400; ++i) {
-    const Blob blob = randomBlob(dice, 1 + i % 9);
-    const Vec3 direction = dice.direction(), target{dice(-1, 1), dice(-1, 1), dice(-1, 1)};
+    const Blob blob = randomBlob(random, 1 + i % 9);
+    const Vec3 direction = random.direction(), target = random.point(-1, 1);
     const LocalRay ray{target - 40 * direction, direction, 1};
     const double t = blob.intersect(ray, 0);
     if (t == kNoHit) continue;
@@ -254,11 +233,11 @@ TEST(Blob, pointsAreOnTheSkinWithinTheirError) {
   }
 }
 
-TEST(HeightField, pointsAreOnTheTrianglesAndCrossingsAlternate) {
-  Dice dice{5};
+TEST(HeightField, PointsAreOnTheTrianglesAndCrossingsAlternate) {
+  SeededRandom random(5);
   const int size = 24;
   std::vector<float> values;
-  for (int i = 0; i < size * size; ++i) values.push_back(static_cast<float>(dice(-0.05, 0.05)));
+  for (int i = 0; i < size * size; ++i) values.push_back(static_cast<float>(random.real(-0.05, 0.05)));
   const HeightField field{makeHeights(size, values)};
   const double cells = size - 1;
   auto heightAt = [&](double x, double y) {  // by the definition of the two triangles of a cell
@@ -272,11 +251,12 @@ TEST(HeightField, pointsAreOnTheTrianglesAndCrossingsAlternate) {
                       : z(1, 1) + (1 - u) * (z(0, 1) - z(1, 1)) + (1 - v) * (z(1, 0) - z(1, 1));
   };
   for (int i = 0; i < 2000; ++i) {
-    const Vec3 from{dice(0, 1), dice(0, 1), 0.06}, to{dice(0, 1), dice(0, 1), -0.06};
+    const Vec3 from{random.real(0, 1), random.real(0, 1), 0.06},
+        to{random.real(0, 1), random.real(0, 1), -0.06};
     const Vec3 direction = normalize(to - from);
     const double distance = i % 2 == 0 ? 0 : 1000;
     const LocalRay ray{from - distance * direction, direction, 1};
-    const std::vector<double> found = crossings(field, ray);
+    const std::vector<double> found = crossingsOfTheLine(field, ray);
     EXPECT_EQ(found.size() % 2, 1u) << "from above the heights to below them";
     for (std::size_t k = 0; k < found.size(); ++k) {
       const ShapePoint at = field.pointAt(ray, found[k]);

@@ -8,8 +8,8 @@
 
 #include <cstdio>
 
-#include "rayshade/base/random.h"
 #include "tests/support/compare_pictures.h"
+#include "tests/support/random.h"
 #include "tests/support/render_text.h"
 
 namespace rayshade {
@@ -18,7 +18,7 @@ namespace {
 // A text in which every length is multiplied by `scale` and every place moved by `far` along x, y and z before.
 class ScaledScene {
  public:
-  ScaledScene(std::uint64_t seed, double scale, double far) : state_(seed), scale_(scale), far_(far) {
+  ScaledScene(std::uint64_t seed, double scale, double far) : random_(seed), scale_(scale), far_(far) {
     text_ = "screen 32 24 sample 1 nojitter maxdepth 3 fov 45 background .1 .2 .3";
     word("eyep").place(0.3, -7, 2).word("lookp").place(0, 0, 0.1);
     word("light .7 point").place(-3, -5, 6).word("light .4 directional -1 -1 2");
@@ -32,10 +32,6 @@ class ScaledScene {
   const std::string& text() const { return text_; }
 
  private:
-  double between(double low, double high) {
-    state_ = mixBits(state_);
-    return low + (high - low) * static_cast<double>(state_ >> 11) * 0x1p-53;
-  }
   ScaledScene& word(const char* w) {
     text_ += std::string("\n") + w;
     return *this;
@@ -52,12 +48,13 @@ class ScaledScene {
   }
   void shape() {
     const char* surfaces[] = {"red", "blue", "glass"};
-    const std::string surface = surfaces[static_cast<int>(between(0, 3))];
-    const double x = between(-2.5, 2.5), y = between(-2, 2), z = between(-1, 1.5), r = between(0.2, 0.7);
+    const std::string surface = surfaces[random_.below(3)];
+    const double x = random_.real(-2.5, 2.5), y = random_.real(-2, 2), z = random_.real(-1, 1.5),
+                 r = random_.real(0.2, 0.7);
     const auto named = [&](const char* keyword) -> ScaledScene& {
       return word((std::string(keyword) + " " + surface).c_str());
     };
-    switch (static_cast<int>(between(0, 9))) {
+    switch (random_.below(9)) {
       case 0:
         named("sphere").length(r).place(x, y, z);
         break;
@@ -89,7 +86,7 @@ class ScaledScene {
     }
   }
 
-  std::uint64_t state_;
+  Random random_;
   double scale_, far_;
   std::string text_;
 };

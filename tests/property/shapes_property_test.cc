@@ -10,8 +10,8 @@
 #include <charconv>
 #include <sstream>
 
-#include "rayshade/base/random.h"
 #include "rayshade/shapes/all.h"
+#include "tests/support/seeded_random.h"
 #include "tests/support/text_arguments.h"
 
 namespace rayshade {
@@ -19,25 +19,11 @@ namespace {
 
 // ---------------------------------------------------------------------------------------------- randomness
 
-class Dice {
+class Dice : public SeededRandom {
  public:
-  explicit Dice(std::uint64_t seed) : key_(RandomKey{mixBits(seed)}) {}
-  double between(double low, double high) {
-    return low + (high - low) * uniform(key_, Dimension::time, ++count_);
-  }
-  double magnitude(double least, double most) {  // log-uniform
-    return std::exp(between(std::log(least), std::log(most)));
-  }
-  Vec3 direction() {
-    const double z = between(-1, 1), turn = between(0, 6.283185307), r = std::sqrt(1 - z * z);
-    return {r * std::cos(turn), r * std::sin(turn), z};
-  }
+  using SeededRandom::SeededRandom;
+  double between(double low, double high) { return real(low, high); }
   Vec3 point(double least, double most) { return magnitude(least, most) * direction(); }
-  bool chance(double p) { return between(0, 1) < p; }
-
- private:
-  RandomKey key_;
-  std::uint32_t count_ = 0;
 };
 
 Vec3 anAxis(Dice& dice) { return dice.chance(0.3) ? Vec3{0, 0, 1} : dice.direction(); }

@@ -9,42 +9,12 @@
 #include <set>
 
 #include "rayshade/accel/bvh.h"
-#include "rayshade/base/random.h"
 #include "rayshade/shapes/sphere.h"
 #include "rayshade/space/walk.h"
+#include "tests/support/seeded_random.h"
 
 namespace rayshade {
 namespace {
-
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : state_(mixBits(seed)) {}
-  double real() { return static_cast<double>(next() >> 11) * 0x1p-53; }
-  double real(double low, double high) { return low + (high - low) * real(); }
-  int integer(int low, int high) { return low + static_cast<int>(next() % (high - low + 1)); }
-  Vec3 point(double low, double high) {
-    const double x = real(low, high), y = real(low, high), z = real(low, high);
-    return {x, y, z};
-  }
-  Vec3 lattice(int low, int high) {
-    const int x = integer(low, high), y = integer(low, high), z = integer(low, high);
-    return {double(x), double(y), double(z)};
-  }
-  Vec3 direction() {
-    for (;;) {
-      const Vec3 d = point(-1, 1);
-      if (dot(d, d) > 0.01 && dot(d, d) < 1) return normalize(d);
-    }
-  }
-  template <class T>
-  const T& pick(const std::vector<T>& list) {
-    return list[next() % list.size()];
-  }
-
- private:
-  std::uint64_t next() { return state_ = mixBits(state_); }
-  std::uint64_t state_;
-};
 
 struct Line {
   Vec3 origin, direction;
@@ -77,10 +47,10 @@ std::set<std::uint32_t> offered(const Bvh& bvh, const Line& line, double tMin, d
 
 // Boxes on a lattice; rays through lattice points, along directions of small integers: corners, edges and
 // faces are met exactly, origins lie on them, and many components are zero.
-TEST(SpaceProperty, TheBvhNeverMissesABoxThatTheExactRayTouches) {
+TEST(Space, TheBvhNeverMissesABoxThatTheExactRayTouches) {
   int touched = 0;
   for (std::uint64_t scene = 0; scene < 60; ++scene) {
-    Random random(scene);
+    SeededRandom random(scene);
     const double scale = std::ldexp(1.0, random.integer(-3, 3) * 40);
     const Vec3 shift = scene % 3 == 0 ? random.lattice(-1000000, 1000000) : Vec3{};
     std::vector<Bounds> lattice, items;
@@ -190,11 +160,11 @@ Nearest bruteForce(const SphereScene& scene, const LocalRay& ray) {
   return best;
 }
 
-TEST(SpaceProperty, TheBvhFindsTheSameNearestSphereAsBruteForce) {
+TEST(Space, TheBvhFindsTheSameNearestSphereAsBruteForce) {
   int hits = 0;
   const double scales[] = {1, 0x1p-300, 0x1p+300, 1e-9, 1e9};
   for (std::uint64_t round = 0; round < 100; ++round) {
-    Random random(1000 + round);
+    SeededRandom random(1000 + round);
     const double scale = scales[round % 5];
     const SphereScene scene = sphereScene(random, random.integer(1, 150), scale);
     const Bvh bvh(scene.bounds);
@@ -254,9 +224,9 @@ void expectPartition(const BinTree& tree, const Line& line) {
   ASSERT_EQ(t, kInfinity);
 }
 
-TEST(SpaceProperty, AWalkIsAPartitionOfTheRay) {
+TEST(Space, AWalkIsAPartitionOfTheRay) {
   for (std::uint64_t round = 0; round < 60; ++round) {
-    Random random(2000 + round);
+    SeededRandom random(2000 + round);
     const SphereScene scene = sphereScene(random, 50, 1);
     const BinTree tree = randomTree(random, scene, 1);
     for (int i = 0; i < 300; ++i) {
@@ -282,11 +252,11 @@ Nearest visitByVisit(const BinTree& tree, const SphereScene& scene,
   return {};
 }
 
-TEST(SpaceProperty, VisitingRegionByRegionFindsWhatBruteForceFinds) {
+TEST(Space, VisitingRegionByRegionFindsWhatBruteForceFinds) {
   int hits = 0;
   const double scales[] = {1, 1, 1e-6, 1e6};
   for (std::uint64_t round = 0; round < 150; ++round) {
-    Random random(3000 + round);
+    SeededRandom random(3000 + round);
     const double scale = scales[round % 4];
     const SphereScene scene = sphereScene(random, 40, scale);
     const BinTree tree = randomTree(random, scene, scale);

@@ -36,6 +36,9 @@ class PrivateMachine {
   VirtualMachine& start(const MachineOptions& options = {}) { return machine_.emplace(options); }
   void halt() { machine_.reset(); }
   const std::string& directory() const { return directory_.path(); }
+  bool nothingLeft() const {  // of all machines that there were
+    return !std::filesystem::exists(directory()) || std::filesystem::is_empty(directory());
+  }
   std::string addressFile() const { return directory_ / "pvmd." + std::to_string(getuid()) + ".test"; }
 
  private:

@@ -4,17 +4,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <initializer_list>
 
-#include "rayshade/base/random.h"
+#include "tests/support/random.h"
 
 namespace rayshade {
 namespace {
 
-class Author {
+class Author : private Random {
  public:
-  explicit Author(std::uint64_t seed)
-      : state_(mixBits(seed + 1)), aligned_(chance(0.3)), moves_(chance(0.2)) {}
+  explicit Author(std::uint64_t seed) : Random(seed + 1), aligned_(chance(0.3)), moves_(chance(0.2)) {}
 
   std::string write() {
     head();
@@ -41,15 +39,10 @@ class Author {
   }
 
  private:
-  // ---- chance
-
-  std::uint64_t next() { return state_ = mixBits(state_); }
-  double unit() { return static_cast<double>(next() >> 11) * 0x1p-53; }
-  int below(int n) { return static_cast<int>(next() % static_cast<std::uint64_t>(n)); }
-  bool chance(double p) { return unit() < p; }
+  // ---- words
 
   std::string number(double low, double high) {
-    double value = low + (high - low) * unit();
+    double value = real(low, high);
     if (aligned_) value = std::min(std::max(std::round(2 * value) / 2, low), high);
     char buffer[32];
     std::snprintf(buffer, sizeof buffer, "%.5g", value);
@@ -57,17 +50,13 @@ class Author {
   }
   std::string share() {
     char buffer[32];
-    std::snprintf(buffer, sizeof buffer, "%.3g", unit());
+    std::snprintf(buffer, sizeof buffer, "%.3g", real());
     return buffer;
   }
   std::string vector(double low, double high) {
     return number(low, high) + " " + number(low, high) + " " + number(low, high);
   }
   std::string color() { return share() + " " + share() + " " + share(); }
-  template <class T>
-  T pick(std::initializer_list<T> choices) {
-    return choices.begin()[below(static_cast<int>(choices.size()))];
-  }
   void statement(const std::string& line) { text_ += line + "\n"; }
 
   // ---- the settings
@@ -154,8 +143,8 @@ class Author {
     }
   }
   std::string box() {
-    const double x = std::round(4 * unit() - 2), y = std::round(4 * unit() - 2),
-                 z = std::round(4 * unit() - 2);
+    const double x = std::round(4 * real() - 2), y = std::round(4 * real() - 2),
+                 z = std::round(4 * real() - 2);
     char buffer[96];
     std::snprintf(buffer, sizeof buffer, "%g %g %g %g %g %g", x, y, z, x + 1 + below(2), y + 1 + below(2),
                   z + 1);
@@ -283,7 +272,6 @@ class Author {
     return t;
   }
 
-  std::uint64_t state_;
   bool aligned_, moves_;
   int definitions_ = 0;
   std::string text_;

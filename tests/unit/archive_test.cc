@@ -1,4 +1,5 @@
 // Values to bytes and back, and bytes that nobody wrote.
+// guarded: reads bytes of others
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rayshade/base/archive.h"
 

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "rayshade/base/random.h"
+#include "tests/support/seeded_random.h"
 
 namespace rayshade {
 namespace {
@@ -21,11 +21,10 @@ double volume(const Bounds& b, const Bounds& world) {
 
 DensityGrid cluster(int n) {
   DensityGrid grid;
+  Random random(1);
   for (int i = 0; i < n; ++i) {
-    const auto random = [&](std::uint32_t use) {
-      return std::pow(uniform(RandomKey{mixBits(i)}, Dimension{use}), 3);
-    };
-    const Vec3 p{random(0), random(1), random(2)};
+    Vec3 p = random.point(0, 1);
+    p = {std::pow(p.x, 3), std::pow(p.y, 3), std::pow(p.z, 3)};
     grid.add({p, p});
   }
   return grid;
@@ -33,14 +32,12 @@ DensityGrid cluster(int n) {
 
 // Every id once, boxes that fit together, and half-open membership: a point is in exactly one cell.
 void expectPartition(const BinTree& tree) {
+  SeededRandom random(2);
   for (int i = 0; i < 50; ++i) {
-    const auto random = [&](std::uint32_t use) {
-      return uniform(RandomKey{mixBits(i)}, Dimension{use}) * 2 - 0.5;
-    };
-    Vec3 p{random(0), random(1), random(2)};
+    Vec3 p = random.point(-0.5, 1.5);
     if (i % 2 == 0)
       for (const BinNode& node : tree.nodes)
-        if (!node.leaf() && mixBits(i + node.high) % 4 == 0) p[node.axis] = node.split;
+        if (!node.leaf() && random.oneIn(4)) p[node.axis] = node.split;
     int cells = 0, voxels = 0;
     const auto inside = [&](const Bounds& b) {
       return b.low.x <= p.x && p.x < b.high.x && b.low.y <= p.y && p.y < b.high.y && b.low.z <= p.z &&
@@ -223,10 +220,10 @@ TEST(BinTree, BoundsThatTouchAPlaneAreOnBothSides) {
 TEST(BinTree, TouchingAppendsEveryCellThatOverlapsAndNoOther) {
   DensityGrid grid = cluster(3000);
   const BinTree tree = buildBinTree(kUnit, {.voxels = 5, .cells = 50}, grid);
+  SeededRandom random(3);
   for (int i = 0; i < 200; ++i) {
-    const auto random = [&](std::uint32_t use) { return uniform(RandomKey{mixBits(i)}, Dimension{use}); };
-    const Vec3 low{random(0), random(1), random(2)};
-    const Bounds bounds{low, low + Vec3{random(3), random(4), random(5)} * 0.3};
+    const Vec3 low = random.point(0, 1);
+    const Bounds bounds{low, low + random.point(0, 0.3)};
     std::vector<CellId> cells{CellId{77}}, expectedCells{CellId{77}};
     std::vector<VoxelId> voxels, expectedVoxels;
     cellsTouching(tree, bounds, cells);

@@ -3,16 +3,15 @@
 
 #include <gtest/gtest.h>
 
-#include "rayshade/base/random.h"
+#include "tests/support/random.h"
 
 namespace rayshade {
 namespace {
 
-double at(std::uint64_t i, std::uint32_t use) { return uniform(RandomKey{mixBits(i)}, Dimension{use}); }
-
 Bounds box(std::uint64_t i) {
-  const Vec3 low{at(i, 0), at(i, 1), at(i, 2)};
-  const double side = 0.001 + 0.1 * std::pow(at(i, 3), 8);
+  Random random(i);
+  const Vec3 low = random.point(0, 1);
+  const double side = 0.001 + 0.1 * std::pow(random.real(), 8);
   return {low, low + Vec3{side, side, side}};
 }
 double area(const Bounds& b) { return 6 * b.size().x * b.size().x; }

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <set>
 
-#include "rayshade/base/random.h"
+#include "tests/support/seeded_random.h"
 
 namespace rayshade {
 namespace {
@@ -191,9 +191,10 @@ TEST(Bvh, DirectionsTooLongOrTooShortSeeEverything) {
 
 TEST(Bvh, TakesAtMostSixtyBytesPerItem) {
   std::vector<Bounds> items;
-  for (std::uint32_t i = 0; i < 20000; ++i) {
-    const auto random = [&](std::uint32_t use) { return uniform(RandomKey{mixBits(i)}, Dimension{use}); };
-    items.push_back(cube({random(0), random(1), random(2)}, 0.02 * random(3)));
+  SeededRandom random(1);
+  for (int i = 0; i < 20000; ++i) {
+    const Vec3 low = random.point(0, 1);
+    items.push_back(cube(low, random.real(0, 0.02)));
   }
   EXPECT_LE(Bvh(items).bytes(), 60 * items.size());
 }

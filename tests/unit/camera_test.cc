@@ -6,6 +6,8 @@
 
 #include <numbers>
 
+#include "tests/support/near.h"
+
 namespace rayshade {
 namespace {
 
@@ -24,12 +26,6 @@ SamplePosition at(double u, double v) {
   return position;
 }
 Vec3 through(const View& view, double u, double v) { return primaryRay(view, at(u, v), 0).direction; }
-
-void expectNear(Vec3 got, Vec3 expected, double most = 1e-15) {
-  EXPECT_NEAR(got.x, expected.x, most);
-  EXPECT_NEAR(got.y, expected.y, most);
-  EXPECT_NEAR(got.z, expected.z, most);
-}
 
 // Without a word about it the eye is at (0, -10, 0), looks along y, and z is up.
 TEST(Camera, TheMiddleOfTheScreenIsTheTarget) {

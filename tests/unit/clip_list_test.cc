@@ -7,28 +7,11 @@
 #include <algorithm>
 #include <set>
 
-#include "rayshade/base/random.h"
 #include "rayshade/space/walk.h"
+#include "tests/support/seeded_random.h"
 
 namespace rayshade {
 namespace {
-
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : key_(sampleKey(seed, 0, 0, 0, 0)) {}
-  double real(double low, double high) {
-    return low + (high - low) * uniform(key_, Dimension::lensX, ++count_);
-  }
-  int integer(int low, int high) { return low + static_cast<int>(real(0, high - low + 1)); }
-  Vec3 point(double low, double high) {
-    const double x = real(low, high), y = real(low, high), z = real(low, high);
-    return {x, y, z};
-  }
-
- private:
-  RandomKey key_;
-  std::uint32_t count_ = 0;
-};
 
 // A box of side 4 at the origin in 64 unit cells; those on its border reach to infinity.
 BinTree unitCells() { return buildBinTree({{0, 0, 0}, {4, 4, 4}}, TreeLimits{64}); }
@@ -89,7 +72,7 @@ TEST(ClipList, EveryWalkOfARayInThePyramidIsASubsequence) {
   int rays = 0;
   std::size_t listed = 0, all = 0;
   for (std::uint64_t seed = 0; seed < 150; ++seed) {
-    Random random(seed);
+    SeededRandom random(seed);
     const BinTree tree = randomTree(random);
     const Vec3 apex = random.point(-12, 12);
     const auto around = corners(random, random.point(-1, 1), random.real(0, 1) * random.real(0, 3));
@@ -109,7 +92,7 @@ TEST(ClipList, EveryWalkOfARayInThePyramidIsASubsequence) {
 TEST(ClipList, FromAnApexOnACuttingPlaneNoCellIsForgotten) {
   const BinTree tree = unitCells();
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
-    Random random(seed);
+    SeededRandom random(seed);
     Vec3 apex = random.point(-1, 5);
     for (int axis = 0; axis < 3; ++axis)
       if (random.integer(0, 1) == 0) apex[axis] = random.integer(0, 4);
@@ -128,7 +111,7 @@ TEST(ClipList, FromAnApexOnACuttingPlaneNoCellIsForgotten) {
 TEST(ClipList, TheCellOfTheApexComesFirst) {
   const BinTree tree = unitCells();
   const Vec3 apexes[] = {{1.5, 2.5, 1.5}, {2, 1.5, 1.5}, {2, 2, 1.5}, {2, 2, 2}, {0, 0, 0}, {-7, 2, 9}};
-  Random random(1);
+  SeededRandom random(1);
   for (const Vec3& apex : apexes)
     for (int i = 0; i < 50; ++i) {
       const auto list = clipList(tree, pyramidOf(apex, corners(random, random.point(-1, 1), 0.3)));
@@ -152,7 +135,7 @@ TEST(ClipList, ACellThatIsTouchedAtACornerIsListed) {
 TEST(ClipList, NothingBehindTheEyeIsListed) {
   const BinTree tree = unitCells();
   for (std::uint64_t seed = 0; seed < 100; ++seed) {
-    Random random(seed);
+    SeededRandom random(seed);
     const Vec3 apex = random.point(0, 4);
     const Pyramid pyramid = pyramidOf(apex, corners(random, random.point(-1, 1), 0.5));
     for (CellId cell : clipList(tree, pyramid)) {
@@ -170,7 +153,7 @@ TEST(ClipList, NothingBehindTheEyeIsListed) {
 TEST(ClipList, TheListsOfTilesAreInTheListOfThePicture) {
   std::size_t found = 0;
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
-    Random random(seed);
+    SeededRandom random(seed);
     const BinTree tree = randomTree(random);
     const Vec3 apex = random.point(-12, 12);
     const auto whole = corners(random, -1 * apex, 0.5);
@@ -203,7 +186,7 @@ TEST(ClipList, AThinPyramidWidensFarAway) {
   const std::array<Vec3, 4> pixel{Vec3{1, -half, -half}, Vec3{1, half, -half}, Vec3{1, half, half},
                                   Vec3{1, -half, half}};
   const auto list = clipList(tree, pyramidOf({}, pixel));
-  Random random(0);
+  SeededRandom random(0);
   std::set<CellId> seen;
   for (int i = 0; i < 2000; ++i)
     for (CellId cell : walked(tree, {}, between(random, pixel))) {
@@ -218,7 +201,7 @@ TEST(LightPyramid, NoOccluderIsForgottenHoweverNearTheLight) {
   const Vec3 corner{1, 1, 2}, u{2, 0, 0}, v{0, 2, 0};
   const BinTree tree = unitCells();
   for (const double distance : {1e-6, 1e-3, 0.5, 3.0, 100.0}) {
-    Random random(7);
+    SeededRandom random(7);
     const Vec3 apex{2.1, 1.7, 2 - distance};
     const auto list = clipList(tree, pyramidTo(apex, corner, u, v));
     for (int i = 0; i < 500; ++i) {
@@ -232,7 +215,7 @@ TEST(LightPyramid, NoOccluderIsForgottenHoweverNearTheLight) {
 TEST(LightPyramid, InThePlaneOfTheLightItIsASheet) {
   const BinTree tree = unitCells();
   const Vec3 corner{1.2, 1.2, 2.5}, u{1, 0, 0}, v{0, 1, 0};
-  Random random(3);
+  SeededRandom random(3);
   for (const Vec3& apex : {Vec3{-3, 1.5, 2.5}, Vec3{1.5, 1.5, 2.5}, corner, corner + u}) {
     const auto list = clipList(tree, pyramidTo(apex, corner, u, v));
     EXPECT_LE(list.size(), cellCount(tree));
@@ -257,7 +240,7 @@ TEST(ClipList, CornersThatSpanNothingCutNothingOffInFront) {
 // As a receiver behind its cell would have it: the same list again, and the same for the same scene times 2^20.
 TEST(ClipList, ScaledByAPowerOfTwoItIsTheSame) {
   for (std::uint64_t seed = 0; seed < 30; ++seed) {
-    Random random(seed);
+    SeededRandom random(seed);
     const Vec3 apex = random.point(-3, 7);
     const auto around = corners(random, random.point(-1, 1), 0.7);
     const auto list = clipList(unitCells(), pyramidOf(apex, around));

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "rayshade/base/random.h"
+#include "tests/support/seeded_random.h"
 
 namespace rayshade {
 namespace {
@@ -14,11 +14,10 @@ Bounds point(double x, double y, double z) { return {{x, y, z}, {x, y, z}}; }
 
 std::vector<Bounds> randomPoints(int n, double size) {
   std::vector<Bounds> list;
+  Random random(1);
   for (int i = 0; i < n; ++i) {
-    const auto random = [&](std::uint32_t use) {
-      return size * (uniform(RandomKey{mixBits(i)}, Dimension{use}) - 0.5);
-    };
-    list.push_back(point(random(0), random(1), random(2)));
+    const Vec3 p = random.point(-size / 2, size / 2);
+    list.push_back({p, p});
   }
   return list;
 }
@@ -53,13 +52,13 @@ TEST(DensityGrid, DoesNotDependOnTheOrderOfObjects) {
   objects.push_back(point(0, -1e-9, 0));
   std::vector<std::vector<DensityGrid::Cube>> seen;
   std::vector<double> sides;
-  for (std::uint64_t round = 0; round < 4; ++round) {
+  SeededRandom random(2);
+  for (int round = 0; round < 4; ++round) {
     DensityGrid grid(300);
     for (const Bounds& b : objects) grid.add(b);
     seen.emplace_back(grid.cubes().begin(), grid.cubes().end());
     sides.push_back(grid.side());
-    for (std::size_t i = objects.size() - 1; i > 0; --i)
-      std::swap(objects[i], objects[mixBits(round << 32 | i) % (i + 1)]);
+    random.shuffle(objects);
     if (round == 0) std::reverse(objects.begin(), objects.end());
   }
   for (std::size_t i = 1; i < seen.size(); ++i) {

@@ -1,3 +1,4 @@
+// guarded: reads text of others
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rayshade/language/expression_reader.h"
 

@@ -1,4 +1,5 @@
 // What the fuzzers have found, and what they begin with, is borne for good.
+// guarded: reads bytes of others
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 

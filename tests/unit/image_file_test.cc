@@ -1,3 +1,4 @@
+// guarded: reads bytes of others
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rayshade/image/image_file.h"
 

@@ -1,3 +1,4 @@
+// guarded: juggles packets
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pvm/host/in_flight.h"
 

@@ -1,4 +1,5 @@
 // Every message as it really travels: taken from the traffic of simulated renders.
+// guarded: reads bytes of others
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pvm/messages/all.h"
 
@@ -12,6 +13,7 @@
 #include "tests/support/null_link.h"
 #include "tests/support/random_scene.h"
 #include "tests/support/render_text.h"
+#include "tests/support/seeded_random.h"
 
 namespace rayshade {
 namespace {
@@ -118,16 +120,14 @@ void feed(const std::vector<Bytes>& packets) {
 
 TEST(Messages, DamagedPacketsDoNoHarm) {
   const std::vector<Bytes>& packets = knownTraffic();
-  std::uint64_t state = 1;
-  auto random = [&state](std::size_t below) {
-    return static_cast<std::size_t>((state = mixBits(state)) % below);
-  };
+  SeededRandom random(1);
   std::vector<Bytes> damaged;
   for (int i = 0; i < 1500; ++i) {
-    Bytes packet = packets[random(packets.size())];
-    const int flips = static_cast<int>(random(4));
-    for (int flip = 0; flip < flips; ++flip) packet[random(packet.size())] ^= std::byte(1u << random(8));
-    if (random(4) == 0) packet.resize(random(packet.size() + 1));
+    Bytes packet = random.pick(packets);
+    const int flips = random.integer(0, 3);
+    for (int flip = 0; flip < flips; ++flip)
+      packet[random.below(packet.size())] ^= std::byte(1u << random.below(8));
+    if (random.oneIn(4)) packet.resize(random.below(packet.size() + 1));
     damaged.push_back(std::move(packet));
   }
   feed<VoxelTask>(damaged);

@@ -1,4 +1,5 @@
 // The cache of other tasks' cells: bounded in bytes, least recently used out first, what is in use stays.
+// guarded: borrows cells of others
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pvm/trace/object_cache.h"
 

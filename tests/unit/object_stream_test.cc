@@ -1,4 +1,5 @@
 // The stream of placed objects says of each what a store that holds the whole scene would say.
+// guarded: reads bytes of others
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rayshade/scene/object_stream.h"
 

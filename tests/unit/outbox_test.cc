@@ -1,4 +1,5 @@
 // Messages gathered into packets: nothing lost, nothing out of order, nothing in the wrong epoch.
+// guarded: juggles packets
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pvm/messages/outbox.h"
 

@@ -13,7 +13,8 @@
 #include <fstream>
 #include <iterator>
 #include <limits>
-#include <random>
+
+#include "tests/support/seeded_random.h"
 
 namespace rayshade {
 namespace {
@@ -36,7 +37,7 @@ class PictureFile : public testing::Test {
   std::size_t files() const {
     return static_cast<std::size_t>(std::distance(fs::directory_iterator(directory_), {}));
   }
-  static std::string boundsInCell(const std::string& name) {
+  static std::string bytesOf(const std::string& name) {
     std::ifstream in(name, std::ios::binary);
     return {std::istreambuf_iterator<char>(in), {}};
   }
@@ -49,11 +50,11 @@ class PictureFile : public testing::Test {
 };
 
 std::vector<std::vector<Color>> randomRows(int width, int height) {
-  std::mt19937 random(5);
-  std::uniform_real_distribution<double> light(-0.2, 1.3);
+  Random random(5);
+  const auto light = [&] { return random.real(-0.2, 1.3); };
   std::vector<std::vector<Color>> rows(static_cast<std::size_t>(height));
   for (auto& row : rows)
-    for (int x = 0; x < width; ++x) row.push_back({light(random), light(random), light(random)});
+    for (int x = 0; x < width; ++x) row.push_back({light(), light(), light()});
   return rows;
 }
 
@@ -182,14 +183,13 @@ TEST_F(PictureFile, HasTheBytesOfItsFormat) {
   const std::vector<std::vector<Color>> rows = {{{1, 0, 0}, {0, 1, 0}}, {{0, 0, 1}, {0.5, 0.5, 0.5}}};
   const std::string levels("\xff\0\0\0\xff\0\0\0\xff\x7f\x7f\x7f", 12);
   write(path("a.mtv"), rows);
-  EXPECT_EQ(boundsInCell(path("a.mtv")), "2 2\n" + levels);
+  EXPECT_EQ(bytesOf(path("a.mtv")), "2 2\n" + levels);
   write(path("a.ppm"), rows);
-  EXPECT_EQ(boundsInCell(path("a.ppm")), "P6\n2 2\n255\n" + levels);
+  EXPECT_EQ(bytesOf(path("a.ppm")), "P6\n2 2\n255\n" + levels);
   write(path("a.pfm"), rows);
   const std::string one("\0\0\x80\x3f", 4), zero(4, 0), half("\0\0\0\x3f", 4);
-  EXPECT_EQ(boundsInCell(path("a.pfm")), "PF\n2 2\n-1.0\n" + zero + zero + one + half + half +
-                                             half +  // bottom
-                                             one + zero + zero + zero + one + zero);
+  EXPECT_EQ(bytesOf(path("a.pfm")), "PF\n2 2\n-1.0\n" + zero + zero + one + half + half + half +  // bottom
+                                        one + zero + zero + zero + one + zero);
 }
 
 TEST_F(PictureFile, AppearsOnlyWhenComplete) {
@@ -212,7 +212,7 @@ TEST_F(PictureFile, LeavesAnOlderOneAloneUntilComplete) {
     PictureWriter writer(path("a.ppm"), 3, 1);
     writer.row(rows[0]);
   }
-  EXPECT_EQ(boundsInCell(path("a.ppm")), "old");
+  EXPECT_EQ(bytesOf(path("a.ppm")), "old");
   write(path("a.ppm"), rows);
   EXPECT_EQ(readPicture(path("a.ppm")).width, 3);
   EXPECT_EQ(files(), 1u);
@@ -306,13 +306,13 @@ TEST_F(PictureFile, RefusesWhatIsNoPicture) {
 
 TEST_F(PictureFile, RefusesOrReadsADamagedPng) {
   write(path("a.png"), randomRows(20, 20));
-  const std::string good = boundsInCell(path("a.png"));
+  const std::string good = bytesOf(path("a.png"));
   for (std::size_t size = 0; size + 12 < good.size(); size += 7)
     EXPECT_THROW(readPicture(put(good.substr(0, size))), std::runtime_error) << size;
-  std::mt19937 random(3);
+  SeededRandom random(3);
   for (int i = 0; i < 300; ++i) {
     std::string bad = good;
-    bad[random() % bad.size()] ^= static_cast<char>(1 << random() % 8);
+    bad[random.below(bad.size())] ^= static_cast<char>(1 << random.below(8));
     try {
       EXPECT_LE(readPicture(put(bad)).pixels.size(), 1200u);
     } catch (const std::runtime_error&) {

@@ -9,9 +9,9 @@
 #include <cmath>
 #include <functional>
 #include <numeric>
-#include <random>
 
 #include "rayshade/sampling/filter.h"
+#include "tests/support/seeded_random.h"
 
 namespace rayshade {
 namespace {
@@ -233,8 +233,8 @@ TEST(Contrast, IsRelativeToTheSumOfTheExtremes) {
 }
 
 TEST(Sampler, GivesTheRowsOfThePlainRuleForAnyOrder) {
-  std::mt19937 random(1);
-  const Order anyOne = [&](std::size_t count) { return random() % count; };
+  SeededRandom random(1);
+  const Order anyOne = [&](std::size_t count) { return random.below(count); };
   for (auto [side, contrast] : {std::pair{2, 1.0}, {3, 1.0}, {3, 0.5}, {6, 1.0}}) {
     PictureSpec spec = specOf(37, 29, side);
     spec.contrast = spec.contrast * contrast;
@@ -250,8 +250,8 @@ TEST(Sampler, GivesTheRowsOfThePlainRuleForAnyOrder) {
 }
 
 TEST(Sampler, GivesTheRowsOfThePlainRuleForAnySize) {
-  std::mt19937 random(2);
-  const Order anyOne = [&](std::size_t count) { return random() % count; };
+  SeededRandom random(2);
+  const Order anyOne = [&](std::size_t count) { return random.below(count); };
   for (std::int32_t side : {1, 2, 8})
     for (auto [width, height] : {std::pair{1, 1},
                                  {1, 9},

@@ -1,3 +1,4 @@
+// guarded: answers tasks
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pvm/shade/shade_ledger.h"
 

@@ -1,4 +1,5 @@
 // Bytes that go to disk when they are many.
+// guarded: juggles packets
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rayshade/scene/spool.h"
 

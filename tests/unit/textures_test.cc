@@ -1,73 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <fstream>
-
-#include "rayshade/textures/apply.h"
-#include "tests/support/text_arguments.h"
+#include "tests/support/texture_subjects.h"
 
 namespace rayshade {
 namespace {
-
-constexpr double kClose = 1e-12;
-constexpr Vec3 kPlace{1.25, -3.7, 8.125};  // where the reference values were computed, by another program
-
-void expectNear(Vec3 a, Vec3 b) {
-  EXPECT_NEAR(a.x, b.x, kClose);
-  EXPECT_NEAR(a.y, b.y, kClose);
-  EXPECT_NEAR(a.z, b.z, kClose);
-}
-
-void expectNear(Color a, Color b) { expectNear(Vec3{a.r, a.g, a.b}, Vec3{b.r, b.g, b.b}); }
-
-// A white surface that looks up.
-TextureHit hitAt(Vec3 position) {
-  TextureHit hit;
-  hit.position = position;
-  hit.normal = {0, 0, 1};
-  hit.dpdu = {1, 0, 0};
-  hit.dpdv = {0, 1, 0};
-  hit.surface.ambient = hit.surface.diffuse = hit.surface.specular = kWhite;
-  return hit;
-}
-
-TextureHit hitAtUv(double u, double v) {
-  TextureHit hit = hitAt({});
-  hit.u = u;
-  hit.v = v;
-  return hit;
-}
-
-template <class T>
-T parsed(const std::string& text) {
-  TextArguments in(text);
-  const std::optional<T> texture = T::parse(in);
-  EXPECT_TRUE(texture && in.allTaken()) << T::keyword << " " << text;
-  return *texture;
-}
-
-template <class T>
-TextureHit applied(const std::string& text, TextureHit hit) {
-  parsed<T>(text).apply(hit);
-  return hit;
-}
-
-// A file that lives as long as the test.
-class TestFile {
- public:
-  TestFile(const std::string& name, const std::string& contents)
-      : path_(std::filesystem::temp_directory_path() /
-              ("rayshade-textures-" + std::to_string(reinterpret_cast<std::uintptr_t>(this)) + name)) {
-    std::ofstream(path_, std::ios::binary) << contents;
-  }
-  ~TestFile() { std::filesystem::remove(path_); }
-  TestFile(const TestFile&) = delete;
-  std::string path() const { return path_.string(); }
-
- private:
-  std::filesystem::path path_;
-};
 
 TEST(Marble, AgreesWithTheOriginal) {
   const TextureHit hit = applied<Marble>("", hitAt(kPlace));
@@ -79,7 +16,7 @@ TEST(Marble, AgreesWithTheOriginal) {
 TEST(Marble, TakesItsColoursFromAMap) {
   std::string lines;
   for (int i = 0; i < 256; ++i) lines += std::to_string(i) + " 0 " + std::to_string(255 - i) + "\n";
-  const TestFile map("map", lines);
+  const TextureFile map("map", lines);
   const TextureHit hit = applied<Marble>(map.path(), hitAt(kPlace));
   expectNear(hit.surface.diffuse, Color{253 / 255.0, 0, 2 / 255.0});  // int(255 * 0.994)
 }
@@ -136,7 +73,7 @@ TEST(Fbm, ScalesAboveTheThresholdAndIsFlatBelow) {
 }
 
 TEST(Fbm, ValuesOutsideOfTheMapTakeItsEnds) {
-  const TestFile map("map", "255 0 0\n0 255 0\n");
+  const TextureFile map("map", "255 0 0\n0 255 0\n");
   EXPECT_EQ(applied<Fbm>("-5 1 0.5 2 5 9 " + map.path(), hitAt(kPlace)).surface.diffuse, (Color{1, 0, 0}));
   EXPECT_EQ(applied<Fbm>("0.005 1 0.5 2 5 9 " + map.path(), hitAt(kPlace)).surface.diffuse, (Color{0, 1, 0}));
   EXPECT_EQ(applied<Fbm>("1e300 1 0.5 2 5 9 " + map.path(), hitAt(kPlace)).surface.diffuse, kBlack);
@@ -192,7 +129,7 @@ TEST(Cloud, IsFiniteFromVeryFarAwayAndWithoutSoftness) {
 TEST(Mount, ColoursByHeightTurbulenceAndSlope) {
   std::string lines;
   for (int i = 0; i < 256; ++i) lines += std::to_string(i) + " 1 2\n";
-  const TestFile map("map", lines);
+  const TextureFile map("map", lines);
   TextureHit hit = hitAt({.1, .2, .3});
   hit.normal = {0.6, 0, 0.8};
   hit = applied<Mount>(map.path() + " 0.5 0.4", hit);
@@ -251,114 +188,6 @@ TEST(Stripe, HasStripesFlatsAndFourBevels) {
   EXPECT_EQ(at(0.9, 0.6).surface.diffuse, kWhite);
 }
 
-ImageTexture textureOf(std::int32_t width, std::int32_t height, std::int32_t channels,
-                       std::vector<std::uint8_t> bytes) {
-  ImageTexture texture;
-  texture.image = std::make_shared<const Image>(Image{width, height, channels, std::move(bytes)});
-  return texture;
-}
-
-// 0 51 / 102 255
-ImageTexture grayTexture() { return textureOf(2, 2, 1, {0, 51, 102, 255}); }
-
-double lookedUp(const ImageTexture& texture, double u, double v) {
-  TextureHit hit = hitAtUv(u, v);
-  texture.apply(hit);
-  return hit.surface.diffuse.g;
-}
-
-TEST(ImageTexture, FirstRowIsAtTheBottomAndItRepeats) {
-  const ImageTexture texture = grayTexture();
-  EXPECT_EQ(lookedUp(texture, 0.1, 0.1), 0);
-  EXPECT_EQ(lookedUp(texture, 0.9, 0.1), 0.2);
-  EXPECT_EQ(lookedUp(texture, 0.1, 0.9), 0.4);
-  EXPECT_EQ(lookedUp(texture, 7.9, -3.1), 1);
-}
-
-TEST(ImageTexture, EveryCoordinateFindsAPixel) {
-  const ImageTexture texture = grayTexture();
-  for (double x : {0.0, 1.0, -1e-20, 1e300, -1e300, double{kInfinity}, std::nan("")})
-    EXPECT_TRUE(std::isfinite(lookedUp(texture, x, x))) << x;
-}
-
-TEST(ImageTexture, ScalesSpecularTooButNotBody) {
-  TextureHit hit = hitAtUv(0.1, 0.9);
-  grayTexture().apply(hit);
-  EXPECT_EQ(hit.surface.specular.r, 0.4);
-  EXPECT_EQ(hit.surface.ambient.r, 0.4);
-  EXPECT_EQ(hit.surface.body, kWhite);
-}
-
-TEST(ImageTexture, SmoothInterpolatesFromTheCornerAndWraps) {
-  ImageTexture texture = grayTexture();
-  texture.smooth = true;
-  EXPECT_NEAR(lookedUp(texture, 0, 0), 0, kClose);
-  EXPECT_NEAR(lookedUp(texture, 0.25, 0), 0.1, kClose);
-  EXPECT_NEAR(lookedUp(texture, 0.75, 0), 0.1, kClose) << "half way from 0.2 to 0 of the next tile";
-  EXPECT_NEAR(lookedUp(texture, 0.25, 0.25), (0 + 0.2 + 0.4 + 1) / 4, kClose);
-}
-
-TEST(ImageTexture, RangeIsHighThenLow) {
-  const TestFile file("gray", "1 1\n\x33\x33\x33");
-  const TextureHit hit = applied<ImageTexture>(file.path() + " component diffuse range 2 1", hitAtUv(0, 0));
-  EXPECT_NEAR(hit.surface.diffuse.r, 1 + (2 - 1) * 0.2, kClose);
-  EXPECT_EQ(hit.surface.ambient, kWhite);
-}
-
-TEST(ImageTexture, TilesLimitWhereItIs) {
-  ImageTexture texture = textureOf(1, 1, 1, {0});
-  auto there = [&texture](double tilesU, double tilesV, double u, double v) {
-    texture.tilesU = tilesU;
-    texture.tilesV = tilesV;
-    return lookedUp(texture, u, v) == 0;
-  };
-  EXPECT_TRUE(there(0, 0, -7, 9));
-  EXPECT_TRUE(there(2, 0, 1.5, 9));
-  EXPECT_FALSE(there(2, 0, 2.5, 9));
-  EXPECT_FALSE(there(2, 0, -0.5, 9));
-  EXPECT_TRUE(there(0.0009, 0, -7, 9));
-  EXPECT_FALSE(there(-2, 0, 1.5, 9));
-  EXPECT_TRUE(there(-2, 0, 2.5, 9));
-  EXPECT_FALSE(there(-2, 1, 2.5, 9));
-  EXPECT_TRUE(there(-2, 1, 2.5, 0.5));
-  EXPECT_FALSE(there(-2, -1, 1.5, 0.5));
-  EXPECT_TRUE(there(-2, -1, 1.5, 1.5));
-}
-
-TEST(ImageTexture, AlphaMixesWithWhatWasThere) {
-  EXPECT_EQ(lookedUp(textureOf(1, 1, 2, {0, 0}), 0, 0), 1);
-  EXPECT_EQ(lookedUp(textureOf(1, 1, 2, {0, 255}), 0, 0), 0);
-  EXPECT_NEAR(lookedUp(textureOf(1, 1, 4, {0, 0, 0, 51}), 0, 0), 0.8, kClose);
-}
-
-TEST(ImageTexture, BumpTakesTheStepToTheNextPixel) {
-  ImageTexture texture = grayTexture();
-  texture.component = ImageTexture::Component::bump;
-  TextureHit hit = hitAtUv(0.1, 0.1);
-  texture.apply(hit);
-  expectNear(hit.normal, normalize({-0.2, -0.4, 1}));
-  EXPECT_EQ(hit.surface.diffuse, kWhite);
-}
-
-TEST(ImageTexture, ScalarComponentsNeedAGrayPicture) {
-  const TestFile file("rgb", "1 1\nabc");
-  for (const char* component : {"reflect", "transp", "specpow", "bump", "index"})
-    EXPECT_THROW(parsed<ImageTexture>(file.path() + " component " + component), std::runtime_error)
-        << component;
-  EXPECT_NO_THROW(parsed<ImageTexture>(file.path() + " component body"));
-  EXPECT_THROW(parsed<ImageTexture>(file.path() + " component nothing"), std::runtime_error);
-}
-
-TEST(ImageTexture, OfAMissingFileNamesIt) {
-  TextArguments in("/nowhere/picture.png");
-  try {
-    ImageTexture::parse(in);
-    FAIL();
-  } catch (const std::runtime_error& error) {
-    EXPECT_NE(std::string(error.what()).find("/nowhere/picture.png"), std::string::npos);
-  }
-}
-
 TEST(Fractals, RefuseARatioThatIsNotAboveZero) {
   TextArguments sky("2 0.5 0 4 0.8 0.3"), bump("0 0.7 0.5 -2 5");
   EXPECT_THROW(Sky::parse(sky), std::runtime_error);
@@ -366,7 +195,7 @@ TEST(Fractals, RefuseARatioThatIsNotAboveZero) {
 }
 
 // Examples with the files that they name.  The stub gives a surface without reading any words.
-std::string withFiles(std::string example, const TestFile& picture, const TestFile& colors) {
+std::string withFiles(std::string example, const TextureFile& picture, const TextureFile& colors) {
   auto replace = [&example](const std::string& word, const std::string& by) {
     const std::size_t at = example.find(word);
     if (at != std::string::npos) example.replace(at, word.size(), by);
@@ -381,7 +210,7 @@ std::string withFiles(std::string example, const TestFile& picture, const TestFi
 // Calls use(texture) for all examples of all textures.
 template <class Use>
 void forAllExamples(Use use) {
-  const TestFile picture("picture", "2 1\nabcdef"), colors("map", "1 2 3\n4 5 6\n");
+  const TextureFile picture("picture", "2 1\nabcdef"), colors("map", "1 2 3\n4 5 6\n");
   AllTextures::forEach([&]<class T>() {
     static_assert(Texture<T>);
     for (std::string_view example : T::examples) {

@@ -12,30 +12,12 @@
 #include "rayshade/shapes/blob.h"
 #include "rayshade/shapes/height_field.h"
 #include "rayshade/shapes/torus.h"
-#include "tests/support/text_arguments.h"
+#include "tests/support/shape_subjects.h"
 
 namespace rayshade {
 namespace {
 
 static_assert(Shape<Torus> && Shape<Blob> && Shape<HeightField>);
-
-constexpr double kBeforeAll = -1e300;
-
-LocalRay rayFrom(Vec3 origin, Vec3 direction) { return {origin, normalize(direction), 1}; }
-
-template <class S>
-std::vector<double> crossings(const S& shape, const LocalRay& ray, double tMin = kBeforeAll) {
-  std::vector<double> all;
-  for (double t = shape.intersect(ray, tMin); t != kNoHit && all.size() < 100; t = shape.intersect(ray, t))
-    all.push_back(t);
-  return all;
-}
-
-template <class S>
-std::optional<S> parsed(std::string_view text) {
-  TextArguments arguments(text);
-  return S::parse(arguments);
-}
 
 void expectNear(const std::vector<double>& found, const std::vector<double>& expected, double error) {
   ASSERT_EQ(found.size(), expected.size());
@@ -44,39 +26,39 @@ void expectNear(const std::vector<double>& found, const std::vector<double>& exp
 
 constexpr Torus kRing{1, 0.25, {}, {0, 0, 1}};
 
-TEST(Torus, lineThroughTheMiddleCrossesFourTimes) {
-  expectNear(crossings(kRing, rayFrom({-5, 0, 0}, {1, 0, 0})), {3.75, 4.25, 5.75, 6.25}, 1e-14);
+TEST(Torus, LineThroughTheMiddleCrossesFourTimes) {
+  expectNear(crossingsOfTheLine(kRing, rayFrom({-5, 0, 0}, {1, 0, 0})), {3.75, 4.25, 5.75, 6.25}, 1e-14);
 }
 
-TEST(Torus, lineAcrossTheTopTouchesTwice) {
-  expectNear(crossings(kRing, rayFrom({-5, 0, 0.25}, {1, 0, 0})), {4, 6}, 1e-7);
+TEST(Torus, LineAcrossTheTopTouchesTwice) {
+  expectNear(crossingsOfTheLine(kRing, rayFrom({-5, 0, 0.25}, {1, 0, 0})), {4, 6}, 1e-7);
 }
 
-TEST(Torus, lineThroughTheHoleMisses) {
-  EXPECT_TRUE(crossings(kRing, rayFrom({0, 0, -5}, {0, 0, 1})).empty());
-  EXPECT_TRUE(crossings(kRing, rayFrom({0.5, 0, -5}, {0, 0.01, 1})).empty());
+TEST(Torus, LineThroughTheHoleMisses) {
+  EXPECT_TRUE(crossingsOfTheLine(kRing, rayFrom({0, 0, -5}, {0, 0, 1})).empty());
+  EXPECT_TRUE(crossingsOfTheLine(kRing, rayFrom({0.5, 0, -5}, {0, 0.01, 1})).empty());
 }
 
-TEST(Torus, thinTubeFromFarAway) {
+TEST(Torus, ThinTubeFromFarAway) {
   const Torus thin{1, 0.01, {}, {0, 0, 1}};
   for (const double distance : {500.0, 5000.0, 50000.0}) {
     const double z = 0.006, half = 0.008;  // 0.006^2 + 0.008^2 = 0.01^2
-    expectNear(crossings(thin, rayFrom({-distance, 0, z}, {1, 0, 0})),
+    expectNear(crossingsOfTheLine(thin, rayFrom({-distance, 0, z}, {1, 0, 0})),
                {distance - 1 - half, distance - 1 + half, distance + 1 - half, distance + 1 + half},
                1e-5 * 0.01);
   }
 }
 
-TEST(Torus, spindleShowsItsInnerSheetWithNormalsIntoIt) {
+TEST(Torus, SpindleShowsItsInnerSheetWithNormalsIntoIt) {
   const Torus spindle{0.5, 1, {}, {0, 0, 1}};
   const LocalRay ray = rayFrom({-5, 0, 0}, {1, 0, 0});
-  expectNear(crossings(spindle, ray), {3.5, 4.5, 5.5, 6.5}, 1e-13);
+  expectNear(crossingsOfTheLine(spindle, ray), {3.5, 4.5, 5.5, 6.5}, 1e-13);
   EXPECT_NEAR(spindle.pointAt(ray, 3.5).geometricNormal.x, -1, 1e-14);
   EXPECT_NEAR(spindle.pointAt(ray, 4.5).geometricNormal.x, 1, 1e-14);
   EXPECT_NEAR(spindle.pointAt(ray, 5.5).geometricNormal.x, -1, 1e-14);
 }
 
-TEST(Torus, boundsAreTight) {
+TEST(Torus, BoundsAreTight) {
   const Bounds flat = Torus{1, 0.25, {1, 2, 3}, {0, 0, -7}}.bounds();
   EXPECT_NEAR(flat.low.x, -0.25, 1e-15);
   EXPECT_NEAR(flat.high.y, 3.25, 1e-15);
@@ -86,7 +68,7 @@ TEST(Torus, boundsAreTight) {
   EXPECT_NEAR(oblique.high.z, 1.25, 1e-15);
 }
 
-TEST(Torus, vIsZeroInsideAndGoesRoundTheTube) {
+TEST(Torus, VIsZeroInsideAndGoesRoundTheTube) {
   auto at = [](Vec3 p) {
     const LocalRay ray = rayFrom(p, {0, 1, 0});
     const ShapePoint point = kRing.pointAt(ray, 0);
@@ -102,7 +84,7 @@ TEST(Torus, vIsZeroInsideAndGoesRoundTheTube) {
   EXPECT_NEAR(at({1.25, 0, 0}).dpdv.z, 1, 1e-12);
 }
 
-TEST(Torus, degenerateOnesAreDropped) {
+TEST(Torus, DegenerateOnesAreDropped) {
   EXPECT_TRUE(parsed<Torus>("1 0.25 0 0 0 0 0 1"));
   EXPECT_TRUE(parsed<Torus>("1e-9 1e-12 0 0 0 0 0 1e-20"));
   EXPECT_FALSE(parsed<Torus>("1 0  0 0 0 0 0 1"));
@@ -116,31 +98,31 @@ TEST(Torus, degenerateOnesAreDropped) {
 const Blob kBall{0.25, {{{}, 1, 1}}};
 const double kSkin = std::sqrt(0.5);
 
-TEST(Blob, oneBallIsASphere) {
-  expectNear(crossings(kBall, rayFrom({-5, 0, 0}, {1, 0, 0})), {5 - kSkin, 5 + kSkin}, 1e-14);
+TEST(Blob, OneBallIsASphere) {
+  expectNear(crossingsOfTheLine(kBall, rayFrom({-5, 0, 0}, {1, 0, 0})), {5 - kSkin, 5 + kSkin}, 1e-14);
   const double half = std::sqrt(kSkin * kSkin - 0.09);
-  expectNear(crossings(kBall, rayFrom({-5, 0.3, 0}, {1, 0, 0})), {5 - half, 5 + half}, 1e-14);
-  EXPECT_TRUE(crossings(kBall, rayFrom({-5, 0.71, 0}, {1, 0, 0})).empty());
+  expectNear(crossingsOfTheLine(kBall, rayFrom({-5, 0.3, 0}, {1, 0, 0})), {5 - half, 5 + half}, 1e-14);
+  EXPECT_TRUE(crossingsOfTheLine(kBall, rayFrom({-5, 0.71, 0}, {1, 0, 0})).empty());
   const LocalRay ray = rayFrom({-5, 0, 0}, {1, 0, 0});
   EXPECT_NEAR(kBall.pointAt(ray, 5 - kSkin).geometricNormal.x, -1, 1e-15);
 }
 
-TEST(Blob, aBallThatJustReachesTheThresholdIsTouchedOnce) {
+TEST(Blob, ABallThatJustReachesTheThresholdIsTouchedOnce) {
   const Blob point{1, {{{}, 1, 1}}};
-  expectNear(crossings(point, rayFrom({-5, 0, 0}, {1, 0, 0})), {5}, 1e-7);
+  expectNear(crossingsOfTheLine(point, rayFrom({-5, 0, 0}, {1, 0, 0})), {5}, 1e-7);
 }
 
-TEST(Blob, ballsInARowMergeAtOneThresholdAndNotAtAnother) {
+TEST(Blob, BallsInARowMergeAtOneThresholdAndNotAtAnother) {
   const std::vector<Metaball> balls{{{-0.5, 0, 0}, 1, 1}, {{0.5, 0, 0}, 1, 1}};
   // In the middle both give (1 - 1/4)^2 = 0.5625.
-  EXPECT_EQ(crossings(Blob{1.1, balls}, rayFrom({-5, 0, 0}, {1, 0, 0})).size(), 2u);
-  EXPECT_EQ(crossings(Blob{1.13, balls}, rayFrom({-5, 0, 0}, {1, 0, 0})).size(), 0u);
+  EXPECT_EQ(crossingsOfTheLine(Blob{1.1, balls}, rayFrom({-5, 0, 0}, {1, 0, 0})).size(), 2u);
+  EXPECT_EQ(crossingsOfTheLine(Blob{1.13, balls}, rayFrom({-5, 0, 0}, {1, 0, 0})).size(), 0u);
   const std::vector<Metaball> apart{{{-0.7, 0, 0}, 1, 1}, {{0.7, 0, 0}, 1, 1}};
-  EXPECT_EQ(crossings(Blob{0.5, apart}, rayFrom({-5, 0, 0}, {1, 0, 0})).size(), 2u);
-  EXPECT_EQ(crossings(Blob{0.6, apart}, rayFrom({-5, 0, 0}, {1, 0, 0})).size(), 4u);
+  EXPECT_EQ(crossingsOfTheLine(Blob{0.5, apart}, rayFrom({-5, 0, 0}, {1, 0, 0})).size(), 2u);
+  EXPECT_EQ(crossingsOfTheLine(Blob{0.6, apart}, rayFrom({-5, 0, 0}, {1, 0, 0})).size(), 4u);
 }
 
-TEST(Blob, aRayThatGoesInFindsTheWayOut) {
+TEST(Blob, ARayThatGoesInFindsTheWayOut) {
   for (int i = 0; i < 500; ++i) {
     const LocalRay arriving = rayFrom({-5, -0.6 + 0.0024 * i, 0.1}, {1, 0, 0});
     const double t = kBall.intersect(arriving, 0);
@@ -153,7 +135,7 @@ TEST(Blob, aRayThatGoesInFindsTheWayOut) {
   }
 }
 
-TEST(Blob, sizeMakesNoDifference) {
+TEST(Blob, SizeMakesNoDifference) {
   const std::vector<Metaball> balls{
       {{-0.3, 0.1, 0}, 0.9, 1}, {{0.5, 0, 0.2}, 0.8, 0.7}, {{0, 0.6, 0}, 0.7, 1.2}};
   const Blob unit{0.4, balls};
@@ -163,8 +145,8 @@ TEST(Blob, sizeMakesNoDifference) {
     for (int y = -20; y <= 20; ++y) {
       for (int x = -20; x <= 20; ++x) {
         const Vec3 origin{0.061 * x, 0.061 * y, -4};
-        const auto plain = crossings(unit, rayFrom(origin, {0.01, 0.02, 1}));
-        const auto large = crossings(scaled, rayFrom(scale * origin, {0.01, 0.02, 1}));
+        const auto plain = crossingsOfTheLine(unit, rayFrom(origin, {0.01, 0.02, 1}));
+        const auto large = crossingsOfTheLine(scaled, rayFrom(scale * origin, {0.01, 0.02, 1}));
         ASSERT_EQ(large.size(), plain.size());
         for (std::size_t i = 0; i < plain.size(); ++i) EXPECT_NEAR(large[i] / scale, plain[i], 1e-12);
         if (plain.empty()) continue;
@@ -179,13 +161,13 @@ TEST(Blob, sizeMakesNoDifference) {
   }
 }
 
-TEST(Blob, thousandsOfOverlappingBallsAreStillQuick) {
+TEST(Blob, ThousandsOfOverlappingBallsAreStillQuick) {
   Blob many{3000, {}};
   for (int i = 0; i < 20000; ++i) many.balls.push_back({{1e-5 * i, 0, 0}, 1, 1});
-  EXPECT_EQ(crossings(many, rayFrom({-5, 0.1, 0}, {1, 0, 0})).size(), 2u);
+  EXPECT_EQ(crossingsOfTheLine(many, rayFrom({-5, 0.1, 0}, {1, 0, 0})).size(), 2u);
 }
 
-TEST(Blob, degenerateOnesAreDropped) {
+TEST(Blob, DegenerateOnesAreDropped) {
   EXPECT_TRUE(parsed<Blob>("0.5 1 1 0 0 0"));
   EXPECT_EQ(parsed<Blob>("0.5 1 1 0 0 0 2 3 4 5 6")->balls.size(), 2u);
   EXPECT_FALSE(parsed<Blob>("0.5 0 1 0 0 0"));
@@ -200,7 +182,7 @@ HeightField fieldOf(std::int32_t size, std::vector<float> values) {
 
 const LocalRay down(double x, double y) { return {{x, y, 10}, {0, 0, -1}, 1}; }
 
-TEST(HeightField, cellsAreCutFromTheRightToTheUpperCorner) {
+TEST(HeightField, CellsAreCutFromTheRightToTheUpperCorner) {
   const HeightField cell =
       fieldOf(2, {0, 0, 0, 1});  // flat below the diagonal, rising to 1 at (1, 1) above it
   EXPECT_DOUBLE_EQ(cell.intersect(down(0.25, 0.25), 0), 10);
@@ -210,7 +192,7 @@ TEST(HeightField, cellsAreCutFromTheRightToTheUpperCorner) {
   EXPECT_EQ(cell.intersect(down(0.5, 0.5), 20), kNoHit);
 }
 
-TEST(HeightField, normalsPointUpAndCoordinatesAreXAndY) {
+TEST(HeightField, NormalsPointUpAndCoordinatesAreXAndY) {
   const HeightField cell = fieldOf(2, {0, 0, 0, 1});
   const LocalRay up{{0.75, 0.6, -10}, {0, 0, 1}, 1};
   const ShapePoint at = cell.pointAt(up, cell.intersect(up, 0));
@@ -224,7 +206,7 @@ TEST(HeightField, normalsPointUpAndCoordinatesAreXAndY) {
   EXPECT_NEAR(dot(c.dpdv, at.normal), 0, 1e-15);
 }
 
-TEST(HeightField, trianglesThatTouchAHoleVanish) {
+TEST(HeightField, TrianglesThatTouchAHoleVanish) {
   const HeightField field = fieldOf(3, {0, 0, 0, 0, -1000, 0, 0, 0, std::nanf("")});
   EXPECT_DOUBLE_EQ(field.intersect(down(0.1, 0.1), 0),
                    10);  // the triangle at (0, 0) does not touch the middle
@@ -242,7 +224,7 @@ std::vector<float> bumps(int size) {
   return values;
 }
 
-TEST(HeightField, noCracksAlongLinesDiagonalsAndCorners) {
+TEST(HeightField, NoCracksAlongLinesDiagonalsAndCorners) {
   const int size = 33;
   const HeightField field = fieldOf(size, bumps(size));
   for (const Vec3 direction :
@@ -264,24 +246,24 @@ TEST(HeightField, noCracksAlongLinesDiagonalsAndCorners) {
   }
 }
 
-TEST(HeightField, aRayThroughASharedEdgeHitsOnce) {
+TEST(HeightField, ARayThroughASharedEdgeHitsOnce) {
   const int size = 17;
   const HeightField field = fieldOf(size, bumps(size));
   for (int i = 0; i <= 64; ++i) {
     for (int j = 0; j <= 64; ++j) {
       const double x = i / 64.0, y = j / 64.0;  // of these, most lie on lines or diagonals
-      EXPECT_EQ(crossings(field, down(x, y)).size(), 1u) << x << " " << y;
+      EXPECT_EQ(crossingsOfTheLine(field, down(x, y)).size(), 1u) << x << " " << y;
     }
   }
 }
 
-TEST(HeightField, aRayInThePlaneOfAFlatFieldMisses) {
+TEST(HeightField, ARayInThePlaneOfAFlatFieldMisses) {
   const HeightField flat = fieldOf(3, std::vector<float>(9, 0.5f));
   EXPECT_EQ(flat.intersect(rayFrom({-1, 0.5, 0.5}, {1, 0, 0}), 0), kNoHit);
   EXPECT_EQ(flat.intersect(rayFrom({-1, 0.5, 0.5}, {1, 0.1, 0}), 0), kNoHit);
 }
 
-TEST(HeightField, theQuadtreeLosesNothing) {
+TEST(HeightField, TheQuadtreeLosesNothing) {
   const int size = 14;
   const HeightField field = fieldOf(size, bumps(size));
   for (int i = 0; i < 400; ++i) {
@@ -289,7 +271,7 @@ TEST(HeightField, theQuadtreeLosesNothing) {
     const LocalRay ray =
         rayFrom({0.5 + 2 * std::cos(angle), 0.5 + 2 * std::sin(angle), 0.02 + 0.001 * (i % 50)},
                 {-std::cos(angle + 0.1), -std::sin(angle + 0.1), -0.01});
-    std::vector<double> one = crossings(field, ray), cellByCell;
+    std::vector<double> one = crossingsOfTheLine(field, ray), cellByCell;
     // Each cell alone, as a field of its own in a transformed space.
     const double cells = size - 1;
     for (int y = 0; y + 1 < size; ++y) {
@@ -301,7 +283,8 @@ TEST(HeightField, theQuadtreeLosesNothing) {
         Vec3 o = ray.origin, d = ray.direction;
         o.x = o.x * cells - x, o.y = o.y * cells - y, d.x *= cells, d.y *= cells;
         const double stretch = length(d);
-        for (const double t : crossings(cell, {o, d / stretch, 1})) cellByCell.push_back(t / stretch);
+        for (const double t : crossingsOfTheLine(cell, {o, d / stretch, 1}))
+          cellByCell.push_back(t / stretch);
       }
     }
     std::sort(cellByCell.begin(), cellByCell.end());
@@ -309,7 +292,7 @@ TEST(HeightField, theQuadtreeLosesNothing) {
   }
 }
 
-TEST(QuarticShapes, scalingByAPowerOfTwoKeepsTheBits) {
+TEST(QuarticShapes, ScalingByAPowerOfTwoKeepsTheBits) {
   const Torus torus{0.9, 0.3, {0.1, 0.2, 0.3}, {1, -2, 0.4}};
   const Blob blob{0.45, {{{-0.5, 0.1, 0}, 0.9, 1}, {{0.4, 0, 0.3}, 0.7, 0.8}}};
   int hits = 0;
@@ -356,7 +339,7 @@ class HeightFieldFile : public testing::Test {
   const std::string name_ = testing::TempDir() + "height_field_test_" + std::to_string(getpid()) + ".hf";
 };
 
-TEST_F(HeightFieldFile, isReadRowByRow) {
+TEST_F(HeightFieldFile, IsReadRowByRow) {
   const auto field = parsed<HeightField>("tests/support/hills.hf");
   ASSERT_TRUE(field);
   EXPECT_EQ(field->heights->size, 9);
@@ -366,7 +349,7 @@ TEST_F(HeightFieldFile, isReadRowByRow) {
   EXPECT_EQ(failure(), "none");
 }
 
-TEST_F(HeightFieldFile, thatPromisesMoreThanItHoldsIsRefused) {
+TEST_F(HeightFieldFile, ThatPromisesMoreThanItHoldsIsRefused) {
   write(30000, 1, 2);
   EXPECT_EQ(failure(), name_ + ": not enough height-field data");
   write(0x7fffffff, 1);
@@ -375,7 +358,7 @@ TEST_F(HeightFieldFile, thatPromisesMoreThanItHoldsIsRefused) {
   EXPECT_EQ(failure(), name_ + ": not enough height-field data");
 }
 
-TEST_F(HeightFieldFile, thatIsNoFieldIsRefused) {
+TEST_F(HeightFieldFile, ThatIsNoFieldIsRefused) {
   write(1, 1);
   EXPECT_NE(failure().find(name_), std::string::npos);
   write(-5, 25);
@@ -386,7 +369,7 @@ TEST_F(HeightFieldFile, thatIsNoFieldIsRefused) {
   EXPECT_EQ(failure(), name_ + ": not enough height-field data");
 }
 
-TEST(HeightField, comesBackFromTheWireWithItsQuadtree) {
+TEST(HeightField, ComesBackFromTheWireWithItsQuadtree) {
   const HeightField field = fieldOf(6, bumps(6));
   const Bytes bytes = encode(field);
   const auto back = decode<HeightField>(bytes);
@@ -397,14 +380,14 @@ TEST(HeightField, comesBackFromTheWireWithItsQuadtree) {
   EXPECT_EQ(back->intersect(ray, 0), field.intersect(ray, 0));
 }
 
-TEST(HeightField, aMessageWithTheWrongNumberOfHeightsIsRefused) {
+TEST(HeightField, AMessageWithTheWrongNumberOfHeightsIsRefused) {
   Bytes bytes;
   Writer{bytes}(std::int32_t{3}, std::vector<float>(8, 0.0f));
   EXPECT_FALSE(decode<HeightField>(bytes));
   EXPECT_EQ(HeightField{}.intersect(down(0.5, 0.5), 0), kNoHit);
 }
 
-TEST(QuarticShapes, raysThatAreNoNumbersHitNothing) {
+TEST(QuarticShapes, RaysThatAreNoNumbersHitNothing) {
   const double nan = std::nan("");
   for (const LocalRay& ray : {LocalRay{{nan, 0, 0}, {1, 0, 0}, 1}, LocalRay{{0, 0, 0}, {nan, nan, nan}, 1},
                               LocalRay{{kInfinity, 0, 0}, {1, 0, 0}, 1}}) {

@@ -1,4 +1,5 @@
 // docs/wire-format.md says what the code does: its example is decoded, its list of messages is compared.
+// guarded: reads bytes of others
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
