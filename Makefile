@@ -6,11 +6,12 @@
 #   make install PREFIX=/usr/local        programs into PREFIX/bin, and where `pvm` looks by convention
 #   make check-sanitized   the tests of what reads bytes of others or juggles tasks, under clang's sanitizers for
 #                     addresses and undefined behaviour; all tests: make SAN=address,undefined check
+#   make docs         the generated parts of the documents (docs/generate); `make check` finds what is out of date
 #   make fuzz         the fuzzers, FUZZ_SECONDS each, in the same build tree
 #   make bench        docs/speed-and-error.md: measures error against time (a few minutes)
 #   make benches      the other measuring programs into bin/bench/
 #   make bench-embree bin/bench/embree_rate: rays per second beside Embree (Debian: libembree-dev)
-#   make experiments  the schemes of the paper measured over PVM, into docs/experiments/ (20 minutes);
+#   make experiments  the schemes of the paper measured over PVM, into docs/experiments/ (7 minutes);
 #                     QUICK=1: small pictures, into BUILD/experiments (2 minutes)
 #   make graph        draws which folder includes which: BUILD/graph.svg, .png, .dot; FOLDERS="rayshade pvm scenes tests": all
 #
@@ -72,7 +73,7 @@ roles := host voxel-trace pyramid-trace shade
 programs := $(BIN)/rayshade $(BIN)/rayshade-error $(BIN)/spd $(roles:%=$(BIN)/rayshade-%)
 test_programs := $(BIN)/rayshade-tests $(BIN)/link-tests $(BIN)/pvm-tests
 
-.PHONY: all demo check check-sanitized build-tests test guarded install fuzz fuzzers bench benches bench-embree experiments graph format clean packages always
+.PHONY: all demo docs check check-sanitized build-tests test guarded install fuzz fuzzers bench benches bench-embree experiments graph format clean packages always
 all: $(programs)
 
 # One short line for a command, or with V=1 the command.
@@ -165,6 +166,9 @@ bench: $(BIN)/rayshade $(BIN)/rayshade-error $(BIN)/spd
 
 experiments: all
 	@PYTHONDONTWRITEBYTECODE=1 tests/bench/experiments/run $(BIN) $(if $(QUICK),$(BUILD)/experiments --quick,docs/experiments)
+
+docs: all
+	@docs/generate --bin $(BIN)
 
 graph:
 	@tests/support/install_packages graph

@@ -21,6 +21,7 @@
 #include "pvm/schedule/options.h"
 #include "rayshade/sampling/sampler.h"
 #include "rayshade/space/survey.h"
+#include "rayshade/space/walk.h"
 #include "rayshade/space/voxel_bounds.h"
 #include "rayshade/trace/render.h"
 

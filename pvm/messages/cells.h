@@ -7,11 +7,12 @@
 
 namespace rayshade {
 
-// From a task that traces with fetched cells, to the owner of the cell's voxel; and back.
+// From a task that traces with fetched cells, to the owner of the cell's voxel: its objects are wanted.
 struct CellWanted {
   static constexpr bool isFact = false;
   CellId cell{};
 };
+// The answer to CellWanted: the objects of the cell.
 struct CellItems {
   static constexpr bool isFact = false;
   CellId cell{};

@@ -7,7 +7,8 @@
 #include "pvm/messages/addresses.h"
 #include "pvm/messages/cells.h"
 #include "rayshade/scene/camera.h"
-#include "rayshade/trace/trace.h"
+#include "rayshade/scene/store.h"
+#include "rayshade/trace/trace_counts.h"
 
 namespace rayshade {
 
@@ -40,23 +41,23 @@ struct FrameRequest {
 // The primary ray of a sample.
 Ray primaryRay(const FrameRequest& request, const Exposure& exposure, const SampleId& sample);
 
-// Forget all items: another frame begins.
+// Host to voxel-trace tasks: forget all items, another frame begins.
 struct Forget {
   static constexpr bool isFact = true;
 };
 
-// A batch of a task's share of the model.
+// Host to a voxel-trace task: a batch of its share of the model.
 struct Items {
   static constexpr bool isFact = true;
   std::vector<Item> items;
 };
 
-// One batch was taken in: there may be another.
+// The answer to Items: one batch was taken in, there may be another.
 struct ItemsTaken {
   static constexpr bool isFact = true;
 };
 
-// A new epoch: drop all work, keep the items, answer Ready.
+// Host to all tasks: a new epoch; drop all work, keep the items, answer Ready.
 struct Configure {
   static constexpr bool isFact = true;
   Epoch epoch{};
@@ -72,6 +73,7 @@ struct Configure {
   double loadEvery = 0;                  // seconds between two Loads; 0: none
 };
 
+// The answer to Configure: all is built, and the fingerprint of the task's arithmetic.
 struct Ready {
   static constexpr bool isFact = true;
   Epoch epoch{};
@@ -82,22 +84,24 @@ struct Ready {
   std::uint64_t leftOut = 0;  // items that did not fit together
 };
 
-// How busy a task is, a few times a second, when shading is placed dynamically; and what follows from it.
+// To the host, a few times a second when shading is placed dynamically: how busy a task is.
 struct Load {
   static constexpr bool isFact = true;
   double busy = 0;  // share of the time since the last one
 };
+// Host to tracing tasks, following from Load: in what proportion shade tasks are chosen.
 struct Weights {
   static constexpr bool isFact = true;
   Epoch epoch{};
   std::vector<std::uint32_t> shadeWeights;
 };
 
-// The end: answer Report and leave.
+// Host to all tasks: the end; answer Report and leave.
 struct Finish {
   static constexpr bool isFact = true;
 };
 
+// The answer to Finish: what the task counted.
 struct Report {
   static constexpr bool isFact = true;
   TraceCounts counts;
@@ -117,9 +121,11 @@ struct Report {
   std::uint64_t cellsServed = 0;
 };
 
+// Host to a silent task: are you there?
 struct Ping {
   static constexpr bool isFact = true;
 };
+// The answer to Ping.
 struct Pong {
   static constexpr bool isFact = true;
 };

@@ -5,10 +5,11 @@
 #include "pvm/messages/addresses.h"
 #include "rayshade/sampling/sampler.h"
 #include "rayshade/shading/combine.h"
+#include "rayshade/shading/shadow.h"
 
 namespace rayshade {
 
-// Follow this ray from position `step` of its walk.
+// To a voxel-trace task: follow this ray from position `step` of its walk.
 struct RayTask {
   static constexpr bool isFact = false;
   Ray ray;
@@ -35,7 +36,7 @@ struct ShadowHead {
   std::int32_t sample = 0;
   RandomKey key{};
 };
-// Follow these shadow rays of one intersection.
+// To a voxel-trace task: follow these shadow rays of one intersection.
 struct ShadowTask {
   static constexpr bool isFact = false;
   ShadowHead head;
@@ -49,6 +50,7 @@ struct LightAnswer {
   Slot slot = 0;
   Color color;
 };
+// To a shade task: light that arrives at one intersection, or that does not.
 struct LightAnswers {
   static constexpr bool isFact = false;
   RecordId record = 0;
@@ -66,13 +68,14 @@ struct Expect {
   InlineVector<Slot, 8> pending;  // light points whose colour will come in LightAnswers, ascending
 };
 
-// From a pyramid task: it could do with a pyramid.
+// From a pyramid-trace task to the host: it has room for a pyramid.
 struct PyramidWanted {
   static constexpr bool isFact = false;
 };
 
-// Follow the primary rays of these samples: to a pyramid task, the samples of a tile, which make one pyramid; to a
-// voxel-trace task, samples whose rays as a rule begin in its voxels.  Sample i is record firstRecord + i of the host.
+// Host to a tracing task: follow the primary rays of these samples.  To a pyramid-trace task, the samples of a tile, which
+// make one pyramid; to a voxel-trace task, samples whose rays as a rule begin in its voxels.  Sample i is record
+// firstRecord + i of the host.
 struct PrimaryRays {
   static constexpr bool isFact = false;
   RecordId firstRecord = 0;
@@ -82,7 +85,7 @@ struct PrimaryRays {
 // Are there any, and are they samples of this picture?
 bool samplesFit(const PrimaryRays& message, const PictureSpec& picture);
 
-// A colour comes home.
+// To a shade task or the host: the colour of a ray comes home.
 struct Answer {
   static constexpr bool isFact = false;
   RecordId record = 0;
@@ -90,7 +93,7 @@ struct Answer {
   Color color;
 };
 
-// The same for samples, to the host: the colour of record first + i for each i.
+// To the host: the colours of samples, of record first + i for each i.
 struct SampleColors {
   static constexpr bool isFact = false;
   RecordId first = 0;
@@ -143,10 +146,10 @@ void serialize(Archive& archive, LightAnswers& m) {
 template <class Archive>
 void serialize(Archive& archive, Expect& m) {
   archive(m.record, m.to, m.hit, m.pending);
-  if constexpr (Archive::kReading) m.gathered.light.assign(m.hit.lit.size());
+  if constexpr (Archive::kReading) m.gathered.light.assign(m.hit.visibility.size());
   std::size_t pending = 0;
-  for (std::size_t point = 0; point < m.hit.lit.size(); ++point) {
-    if (m.hit.lit[point] != LightVisibility::traced) continue;
+  for (std::size_t point = 0; point < m.hit.visibility.size(); ++point) {
+    if (m.hit.visibility[point] != LightVisibility::traced) continue;
     if (pending < m.pending.size() && m.pending[pending] == point) {
       ++pending;
     } else {

@@ -20,6 +20,12 @@ class TaskContext {
   std::uint64_t peakQueue = 0;
   double idleSeconds = 0;
 
+  // A new epoch: what is open goes out with the old one, and what comes must be of the new one.
+  void beginEpoch(TaskId host, const Configure& message) {
+    outbox.beginEpoch(message.epoch);
+    epoch = message.epoch;
+    reportLoad(host, message.loadEvery);
+  }
   // Tells the host how busy this task has been, every so often if at all.
   void reportLoad(TaskId host, double every) {
     loadTo_ = host;

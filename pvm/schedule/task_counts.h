@@ -1,4 +1,4 @@
-// What a scene cannot keep busy is not started.
+// Tasks without work are not started.
 //
 // The fewest rays and objects that a scene surely has say how many tasks of a kind could ever have work; those beyond are
 // taken off the wishes, whoever made them.

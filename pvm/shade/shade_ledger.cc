@@ -41,9 +41,9 @@ ShadeLedger::Record* ShadeLedger::find(RecordId id) {
 
 ShadeLedger::Verdict ShadeLedger::expect(Expect&& message) {
   // Whoever has added the lights says no more of them.
-  if (message.hit.lit.size() != (message.hit.lightsAdded ? 0 : lightPoints_) ||
-      std::any_of(message.hit.lit.begin(), message.hit.lit.end(),
-                  [](LightVisibility lit) { return lit > LightVisibility::traced; }))
+  if (message.hit.visibility.size() != (message.hit.lightsAdded ? 0 : lightPoints_) ||
+      std::any_of(message.hit.visibility.begin(), message.hit.visibility.end(),
+                  [](LightVisibility v) { return v > LightVisibility::traced; }))
     return Verdict::refused;
   // Many intersections come with all their colours.
   if (message.pending.empty() && !message.hit.back.transmitted && !message.hit.back.reflected) {

@@ -4,9 +4,7 @@
 namespace rayshade {
 
 void ShadeTask::on(TaskId from, Configure message) {
-  context_.outbox.beginEpoch(message.epoch);
-  context_.epoch = message.epoch;
-  context_.reportLoad(from, message.loadEvery);
+  context_.beginEpoch(from, message);
   settings_ = std::move(message.settings);
   ledger_.begin(lightPointCount(settings_), finderCount(message.directory));
   context_.link.connect(message.directory.voxelTasks);

@@ -10,7 +10,7 @@
 #include <unordered_map>
 
 #include "pvm/messages/cells.h"
-#include "rayshade/trace/local_trace.h"
+#include "rayshade/trace/local_space.h"
 
 namespace rayshade {
 

@@ -2,6 +2,7 @@
 #include "rayshade/intersect/bundle_hit.h"
 
 #include "rayshade/accel/bvh_bundle.h"
+#include "rayshade/intersect/nearer.h"
 #include "rayshade/intersect/ray_hit.h"
 
 namespace rayshade {
@@ -53,25 +54,24 @@ void nearestHits(const Model& model, const Region& region, std::span<Segment> se
                  Processor processor) {
   onProcessor(processor, [&]() RAYSHADE_INLINE {
     Testers testers(model, segments);
+    const SceneStore& store = model.store();
     std::fill_n(hits.begin(), segments.size(), Hit{});
     region.bvh.nearest(segments, [&](std::uint32_t first, std::uint32_t count, RaySet asking) {
-      RaySet nearer = 0;
+      RaySet improved = 0;
       for (const Target& target : std::span(region.objects).subspan(first, count)) {
         testers.test(target, asking, [&](std::size_t i, double t) {
           Hit& best = hits[i];
           ++best.tests;
-          if (!(t <= segments[i].tMax) || t == kNoHit) return;
-          // At the end of a segment nothing counts but what was found there already.
-          if (t == segments[i].tMax && (!best.found() || precedence(model.store().object(target.object)) >=
-                                                             precedence(model.store().object(best.object))))
+          if (!nearer(t, store.object(target.object), segments[i].tMax,
+                      best.found() ? &store.object(best.object) : nullptr))
             return;
           best.t = t;
           best.object = target.object;
           segments[i].tMax = t;
-          nearer |= RaySet{1} << i;
+          improved |= RaySet{1} << i;
         });
       }
-      return nearer;
+      return improved;
     });
   });
 }

@@ -1,4 +1,4 @@
-// Rays that are sent together: the answers of visit() and occlusion(), for a bundle at once.
+// Rays that are sent together: what a bundle meets in one region, found at once.
 //
 // The rays of neighbouring pixels, or from neighbouring points to one light, go through the same nodes of the
 // accelerator; together they fetch each node once.  Every ray is tested against objects by the same functions
@@ -24,11 +24,16 @@ struct Segment : RayQuery {
   Moment moment;
 };
 
-// visit() for each of at most kBundleSize segments, whose tMax become the t of the hits.
+// nearestHit() for each of at most kBundleSize segments, whose tMax become the t of the hits.
 void nearestHits(const Model& model, const Region& region, std::span<Segment> segments, std::span<Hit> hits,
                  Processor processor = thisProcessor());
 
-// occlusion() for each of at most kBundleSize segments.
+// Is there something opaque between tMin and tMax?  `transparent` tells whether something else was met, as far as was looked.
+struct Occlusion {
+  bool opaque = false, transparent = false;
+  std::uint32_t tests = 0;  // objects that were tested
+};
+// For each of at most kBundleSize segments.
 void occlusions(const Model& model, const Region& region, std::span<Segment> segments,
                 std::span<Occlusion> met, Processor processor = thisProcessor());
 

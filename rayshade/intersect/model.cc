@@ -139,32 +139,6 @@ Hit nearestHit(const Model& model, const Region& region, const Ray& ray, double 
   return nearestHit(model, region, {ray.origin, ray.direction, 1}, ray.moment, tMin, tExit);
 }
 
-Occlusion occlusion(const Model& model, const Region& region, const Ray& ray, double tMin, double tExit,
-                    ObjectIndex& occluder) {
-  const LocalRay local{ray.origin, ray.direction, 1};
-  RayIntersector probe(model, local, ray.moment);
-  if (occluder != kNone) {
-    const Target target = model.target(occluder);
-    if (target.opaque && probe.intersect(target, tMin) < tExit) return {true, false, 1};
-  }
-  Occlusion met;
-  region.bvh.any(ray.origin, ray.direction, tMin, tExit, [&](std::uint32_t first, std::uint32_t count) {
-    for (const Target& target : std::span(region.objects).subspan(first, count)) {
-      if (!target.opaque && met.transparent) continue;  // nothing new could be learned
-      ++met.tests;
-      if (!(probe.intersect(target, tMin) < tExit)) continue;
-      if (target.opaque) {
-        met.opaque = true;
-        occluder = target.object;
-        return true;
-      }
-      met.transparent = true;
-    }
-    return false;
-  });
-  return met;
-}
-
 HitPath pathTo(const Model& model, const Ray& ray, const Hit& hit) {
   const SceneStore& store = model.store();
   HitPath path;

@@ -93,16 +93,6 @@ std::uint64_t precedence(const PlacedObject& object);
 // The nearest hit with tMin < t < tExit among the objects of a region of world space.
 Hit nearestHit(const Model& model, const Region& region, const Ray& ray, double tMin, double tExit);
 
-// Is there an opaque thing with tMin < t < tExit?  `transparent` tells whether something else was met on the way (as
-// far as was looked).  `occluder` is what is asked first, if it is an opaque one, and becomes what was found: rays to
-// the same light are often stopped by the same thing.  It changes when the answer is found, never the answer.
-struct Occlusion {
-  bool opaque = false, transparent = false;
-  std::uint32_t tests = 0;  // objects that were tested
-};
-Occlusion occlusion(const Model& model, const Region& region, const Ray& ray, double tMin, double tExit,
-                    ObjectIndex& occluder);
-
 // One step of the way from an object of the world down to the shape that was hit.
 struct PathStep {
   ObjectIndex object = kNone;

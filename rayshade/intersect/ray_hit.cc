@@ -2,6 +2,7 @@
 #include "rayshade/intersect/ray_hit.h"
 
 #include "rayshade/intersect/csg.h"
+#include "rayshade/intersect/nearer.h"
 
 namespace rayshade {
 namespace {
@@ -61,17 +62,18 @@ double RayIntersector::intersectAny(const Target& target, double tMin, double tM
 
 Hit nearestHit(const Model& model, const Region& region, const LocalRay& ray, const Moment& moment,
                double tMin, double tExit) {
-  RayIntersector probe(model, ray, moment);
+  RayIntersector intersector(model, ray, moment);
+  const SceneStore& store = model.store();
   Hit best;
   double limit = tExit * ray.scale;  // in the units of the region, for the accelerator
   region.bvh.nearest(ray.origin, ray.direction, tMin * ray.scale, limit,
                      [&](std::uint32_t first, std::uint32_t count) {
                        best.tests += count;
                        for (const Target& target : std::span(region.objects).subspan(first, count)) {
-                         const double t = probe.intersect(target, tMin, std::min(best.t, tExit));
-                         if (!(t < tExit) || t > best.t) continue;
-                         if (t == best.t && precedence(model.store().object(target.object)) >=
-                                                precedence(model.store().object(best.object)))
+                         const double end = std::min(best.t, tExit);
+                         const double t = intersector.intersect(target, tMin, end);
+                         if (!nearer(t, store.object(target.object), end,
+                                     best.found() ? &store.object(best.object) : nullptr))
                            continue;
                          best.t = t;
                          best.object = target.object;

@@ -14,45 +14,7 @@ Color throughAir(Color seen, Vec3 origin, Vec3 direction, double distance, const
   return seen;
 }
 
-// `sampleOf(light, ofLight, point)`: the point of that number of a light, and in the row of all points.
-template <class SampleOf>
-Color addLights(const Surface& surface, const Facing& facing, const LightVisibilities& lit,
-                const Gathered& gathered, const SceneSettings& settings, SampleOf sampleOf) {
-  Color sum = surface.ambient * settings.ambient;
-  std::size_t end = lit.size();  // of the points of the light that is being added
-  for (std::size_t l = settings.lights.size(); l-- > 0;) {
-    const LightSource& light = settings.lights[l];
-    const std::size_t begin = end - static_cast<std::size_t>(pointsOf(light));
-    for (std::size_t p = begin; p < end; ++p) {
-      if (lit[p] == LightVisibility::none) continue;
-      const Color through = lit[p] == LightVisibility::traced ? gathered.light[p] : kWhite;
-      if (through == kBlack) continue;
-      const LightSample& sample = sampleOf(static_cast<std::uint32_t>(l), p - begin, p);
-      sum = addLight(sum, surface, facing, sample.toward, sample.factor * (light.color * through));
-    }
-    end = begin;
-  }
-  return sum;
-}
-
 }  // namespace
-
-// The shading model of the language reference: Phong 1975 without normalisation.
-Color addLight(Color sum, const Surface& surface, const Facing& facing, Vec3 toward, Color light) {
-  const double along = dot(facing.reflected, toward);
-  const double cosine = lightCosine(toward, facing.normal, facing.geometricNormal, facing.smooth);
-  if (cosine > 0) {
-    sum = sum + cosine * (surface.diffuse * light);
-    if (surface.specular == kBlack) return sum;  // spares a pow
-    const double lobe = phongLobe(along, surface.specularPower);
-    return lobe > 0 ? sum + lobe * (surface.specular * light) : sum;
-  }
-  sum = sum + -cosine * (surface.translucent * light);
-  const double lobe = phongLobe(-along, surface.translucentPower);
-  if (lobe > 0) sum = sum + lobe * (surface.body * light);
-  // Everything summed so far is scaled, ambient and earlier lights included: what rayshade does.
-  return surface.translucency * sum;
-}
 
 Color attenuated(Color sum, Vec3 origin, Vec3 direction, double distance, double extinct, bool inAir,
                  const SceneSettings& settings) {
@@ -78,10 +40,10 @@ ReturnPath returnPath(const Ray& ray, double t, const OnwardRays& onward, const 
   return back;
 }
 
-Intersection describe(const Ray& ray, double t, const SurfacePoint& at, const Secondary& spawned,
-                      const SceneSettings& settings) {
+Intersection describe(const Ray& ray, double t, const SurfacePoint& at, const OnwardRays& onward,
+                      LightVisibilities visibility, const SceneSettings& settings) {
   Intersection hit;
-  hit.back = returnPath(ray, t, spawned, settings);
+  hit.back = returnPath(ray, t, onward, settings);
   hit.direction = ray.direction;
   hit.key = ray.key;
   hit.sample = ray.sample;
@@ -99,17 +61,8 @@ Intersection describe(const Ray& ray, double t, const SurfacePoint& at, const Se
     hit.surface.translucency = at.surface.translucency;
     hit.surface.translucentPower = at.surface.translucentPower;
   }
-  hit.lit = spawned.lit;
+  hit.visibility = std::move(visibility);
   return hit;
-}
-
-Color addLights(const Ray& ray, const SurfacePoint& at, const Secondary& spawned, const Gathered& gathered,
-                const SceneSettings& settings) {
-  const Facing facing{at.normal, at.geometricNormal, at.smooth, mirrored(ray.direction, at.normal)};
-  return addLights(at.surface, facing, spawned.lit, gathered, settings,
-                   [&](std::uint32_t, std::size_t, std::size_t point) -> const LightSample& {
-                     return spawned.samples[point];
-                   });
 }
 
 Color finish(Color sum, const ReturnPath& back, Color transmitted, Color reflected,
@@ -123,14 +76,18 @@ Color combine(const Intersection& hit, const Gathered& gathered, const SceneSett
   if (hit.lightsAdded)
     return finish(*hit.lightsAdded, hit.back, gathered.transmitted, gathered.reflected, settings);
   const Facing facing{hit.normal, hit.geometricNormal, hit.smooth, mirrored(hit.direction, hit.normal)};
-  // The lights are looked at again, with the same answers.
-  const Color sum =
-      addLights(hit.surface, facing, hit.lit, gathered, settings,
-                [&](std::uint32_t light, std::size_t ofLight, std::size_t) {
-                  return sampleLight(settings.lights[light],
-                                     lightQuery(hit.position, hit.key, hit.sample, light, settings),
-                                     static_cast<int>(ofLight));
-                });
+  Color sum = hit.surface.ambient * settings.ambient;
+  forEachLightPoint(settings, [&](const LightPoint& point) {
+    const LightVisibility visibility = hit.visibility[point.row];
+    if (visibility == LightVisibility::none) return;
+    const Color through = visibility == LightVisibility::traced ? gathered.light[point.row] : kWhite;
+    if (through == kBlack) return;
+    // The light is looked at again, with the same answer.
+    const LightSource& light = settings.lights[point.light];
+    const LightSample sample =
+        sampleLight(light, lightQuery(hit.position, hit.key, hit.sample, point.light, settings), point.index);
+    sum = addLight(sum, hit.surface, facing, sample.toward, sample.factor * (light.color * through));
+  });
   return finish(sum, hit.back, gathered.transmitted, gathered.reflected, settings);
 }
 

@@ -8,6 +8,7 @@
 
 #include <optional>
 
+#include "rayshade/shading/light_loop.h"
 #include "rayshade/shading/spawn.h"
 
 namespace rayshade {
@@ -34,7 +35,7 @@ struct Intersection {
   bool smooth = false;  // the normal is interpolated: then the geometric one counts too
   Vec3 geometricNormal;
   Surface surface;  // what is seen of it: neither its index nor how much it reflects
-  LightVisibilities lit;
+  LightVisibilities visibility;
 };
 
 // The colours that come back, each in its own place.
@@ -44,8 +45,8 @@ struct Gathered {
 };
 
 ReturnPath returnPath(const Ray& ray, double t, const OnwardRays& onward, const SceneSettings& settings);
-Intersection describe(const Ray& ray, double t, const SurfacePoint& at, const Secondary& spawned,
-                      const SceneSettings& settings);
+Intersection describe(const Ray& ray, double t, const SurfacePoint& at, const OnwardRays& onward,
+                      LightVisibilities visibility, const SceneSettings& settings);
 // The same once the lights have been added.
 inline Intersection afterLights(Color sum, const ReturnPath& back) {
   Intersection hit;
@@ -54,24 +55,10 @@ inline Intersection afterLights(Color sum, const ReturnPath& back) {
   return hit;
 }
 
-// How a hit is turned towards lights and viewer.
-struct Facing {
-  Vec3 normal, geometricNormal;
-  bool smooth = false;
-  Vec3 reflected;  // the ray's mirror direction
-};
-
-// The steps of combine(), for those who have the colours at hand one after the other.
-//
-// Adds one point of a light: `toward` it, `light` what arrives from it.
-Color addLight(Color sum, const Surface& surface, const Facing& facing, Vec3 toward, Color light);
 // What is left of a colour at the origin of the ray that brings it.
 Color attenuated(Color sum, Vec3 origin, Vec3 direction, double distance, double extinct, bool inAir,
                  const SceneSettings& settings);
 
-// Ambient light and all lights, for those who have what spawnSecondary() has found still at hand.
-Color addLights(const Ray& ray, const SurfacePoint& at, const Secondary& spawned, const Gathered& gathered,
-                const SceneSettings& settings);
 // What comes after the lights.
 Color finish(Color sum, const ReturnPath& back, Color transmitted, Color reflected,
              const SceneSettings& settings);
@@ -95,7 +82,7 @@ void serialize(Archive& archive, Intersection& i) {
     return;
   }
   Surface& surface = i.surface;
-  archive(i.direction, i.key, i.position, i.normal, i.lit);
+  archive(i.direction, i.key, i.position, i.normal, i.visibility);
   serializeSparse(archive, Usual{i.sample, 0}, Usual{i.geometricNormal, Vec3{}}, Usual{i.smooth, false});
   serializeSparse(archive, Usual{surface.ambient, kBlack}, Usual{surface.diffuse, kBlack},
                   Usual{surface.specular, kBlack}, Usual{surface.specularPower, 15.0},

@@ -5,20 +5,15 @@
 
 namespace rayshade {
 
-bool passShadow(const Model& model, const Region& region, ShadowRay& shadow, double tExit,
-                const SceneSettings& settings) {
-  const double end = std::min(tExit, shadow.distance);
-  const Occlusion met = occlusion(model, region, shadow.ray, shadow.last, end, shadow.occluder);
-  shadow.tests += met.tests;
-  if (met.opaque) return false;
-  if (!met.transparent) return true;
-  if (!settings.transparentShadows) return false;
-  for (;;) {
-    const Hit hit = nearestHit(model, region, shadow.ray, shadow.last, end);
-    shadow.tests += hit.tests;
-    if (!hit.found()) return true;
-    if (!passSurface(model, hit, shadow, settings)) return false;
-  }
+ShadowRay shadowRay(const Ray& ray, const SurfacePoint& at, const LightSample& sample) {
+  ShadowRay shadow;
+  shadow.ray.origin = originOff(at, sample.shadowToward);
+  shadow.ray.direction = sample.shadowToward;
+  shadow.ray.moment = ray.moment;
+  shadow.ray.sample = ray.sample;
+  shadow.ray.key = ray.key;
+  shadow.distance = sample.shadowDistance;
+  return shadow;
 }
 
 bool passSurface(const Model& model, const Hit& hit, ShadowRay& shadow, const SceneSettings& settings) {

@@ -1,21 +1,28 @@
-// What one region does to a shadow ray.
+// Shadow rays: from a hit to a point of a light, and what transparent surfaces do to them.
 //
-// An opaque thing anywhere on the way means darkness, whatever else is there.  Transparent ones filter the light at
-// every crossing, entry and exit, near to far; between an entry and the next crossing the light is attenuated by the
-// solid's extinct^distance.  A surface counts as transparent by its own transparency before textures; the filter is
-// that after textures (rayshade's rule).
+// Transparent surfaces filter the light at every crossing, entry and exit, near to far; between an entry and the next crossing
+// the light is attenuated by the solid's extinct^distance.  A surface counts as transparent by its own transparency before
+// textures; the filter is that after textures (rayshade's rule).
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include "rayshade/intersect/model.h"
 #include "rayshade/scene/settings.h"
-#include "rayshade/shading/spawn.h"
+#include "rayshade/shading/surface_point.h"
 
 namespace rayshade {
 
-// Takes the ray through a region, up to tExit or its light.  False: it ends in darkness.
-bool passShadow(const Model& model, const Region& region, ShadowRay& shadow, double tExit,
-                const SceneSettings& settings);
+struct ShadowRay {
+  Ray ray;
+  double distance = 0;       // things at this distance or farther do not matter          [world units]
+  Color through = kWhite;    // what has been let through so far
+  double last = 0;           // t of the last transparent surface that was crossed
+  double insideExtinct = 1;  // extinct of the solid it is in, if `inside`
+  bool inside = false;
+};
+
+// The shadow ray of a hit to a point of a light that is seen as `sample` from there.
+ShadowRay shadowRay(const Ray& ray, const SurfacePoint& at, const LightSample& sample);
 
 // Takes the ray through a transparent surface that it meets.  False: it ends in darkness.
 bool passSurface(const Model& model, const Hit& hit, ShadowRay& shadow, const SceneSettings& settings);

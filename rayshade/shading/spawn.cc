@@ -6,12 +6,6 @@
 namespace rayshade {
 namespace {
 
-// Could light from this side change the colour?
-bool answers(const Surface& surface, double cosine) {
-  if (cosine > 0) return anyAbove(surface.diffuse, 0) || anyAbove(surface.specular, 0);
-  return surface.translucency >= kNegligible;
-}
-
 // A child of a ray, leaving the hit in a direction.
 Ray secondaryRay(const Ray& ray, const SurfacePoint& at, Vec3 direction, Branch branch, Color weight) {
   Ray child;
@@ -46,50 +40,6 @@ Passage passage(const Ray& ray, const SurfacePoint& at, const SceneSettings& set
 
 }  // namespace
 
-std::size_t lightPointCount(const SceneSettings& settings) {
-  std::size_t count = 0;
-  for (const LightSource& light : settings.lights) count += static_cast<std::size_t>(pointsOf(light));
-  return count;
-}
-
-LightPoint lightPoint(const SceneSettings& settings, std::size_t point) {
-  std::uint32_t light = 0;
-  for (; light + 1 < settings.lights.size(); ++light) {
-    const auto points = static_cast<std::size_t>(pointsOf(settings.lights[light]));
-    if (point < points) break;
-    point -= points;
-  }
-  return {light, static_cast<int>(point)};
-}
-
-LightQuery lightQuery(Vec3 position, RandomKey key, int sample, std::uint32_t light,
-                      const SceneSettings& settings) {
-  return {position, child(key, Branch::light, light), sample, settings.samplesPerSide};
-}
-
-LightVisibility lit(const LightSource& light, const LightSample& sample, const SurfacePoint& at,
-                    const SceneSettings& settings) {
-  const double cosine = lightCosine(sample.toward, at.normal, at.geometricNormal, at.smooth);
-  if (!(sample.factor > 0) || !answers(at.surface, cosine)) return LightVisibility::none;
-  return settings.shadows && light.castsShadows && !at.surface.noShadow ? LightVisibility::traced
-                                                                        : LightVisibility::unshadowed;
-}
-
-Secondary spawnSecondary(const Ray& ray, const SurfacePoint& at, const SceneSettings& settings) {
-  Secondary spawned{spawnOnward(ray, at, settings), {}, {}};
-  for (std::uint32_t l = 0; l < settings.lights.size(); ++l) {
-    const LightSource& light = settings.lights[l];
-    const LightQuery query = lightQuery(at.position, ray.key, ray.sample, l, settings);
-    const int points = pointsOf(light);
-    for (int i = 0; i < points; ++i) {
-      const LightSample sample = sampleLight(light, query, i);
-      spawned.samples.push_back(sample);
-      spawned.lit.push_back(lit(light, sample, at, settings));
-    }
-  }
-  return spawned;
-}
-
 OnwardRays spawnOnward(const Ray& ray, const SurfacePoint& at, const SceneSettings& settings) {
   const Surface& surface = at.surface;
   OnwardRays spawned;
@@ -118,26 +68,6 @@ OnwardRays spawnOnward(const Ray& ray, const SurfacePoint& at, const SceneSettin
     spawned.reflected->media = ray.media;
   }
   return spawned;
-}
-
-ShadowRay shadowRay(const Ray& ray, const SurfacePoint& at, const SceneSettings& settings,
-                    std::size_t point) {
-  const LightPoint which = lightPoint(settings, point);
-  const LightSource& light = settings.lights[which.light];
-  return shadowRay(
-      ray, at,
-      sampleLight(light, lightQuery(at.position, ray.key, ray.sample, which.light, settings), which.index));
-}
-
-ShadowRay shadowRay(const Ray& ray, const SurfacePoint& at, const LightSample& sample) {
-  ShadowRay shadow;
-  shadow.ray.origin = originOff(at, sample.shadowToward);
-  shadow.ray.direction = sample.shadowToward;
-  shadow.ray.moment = ray.moment;
-  shadow.ray.sample = ray.sample;
-  shadow.ray.key = ray.key;
-  shadow.distance = sample.shadowDistance;
-  return shadow;
 }
 
 }  // namespace rayshade

@@ -187,8 +187,10 @@ int measure(const std::string& file, std::int32_t side) {
   });
   seconds.alone = secondsOf([&] {
     for (std::size_t i = 0; i < shadows.size(); ++i) {
-      ObjectIndex occluder = kNone;
-      dark[i] = occlusion(model, region, shadows[i], 0, distances[i], occluder).opaque;
+      Segment segment(shadows[i], 0, distances[i]);
+      Occlusion met;
+      occlusions(model, region, std::span(&segment, 1), std::span(&met, 1));
+      dark[i] = met.opaque;
     }
   });
   seconds.embree = secondsOf([&] {

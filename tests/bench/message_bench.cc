@@ -60,9 +60,9 @@ Expect expectation(RecordId record, std::size_t pending, bool reflected) {
   e.hit.normal = {0, 0, 1};
   e.hit.surface.diffuse = {.5, .45, .35};
   e.hit.surface.specular = {.5, .5, .5};
-  e.hit.lit.resize(3);
-  e.gathered.light.resize(3);
-  for (std::size_t i = 0; i < 3; ++i) e.hit.lit[i] = LightVisibility::traced;
+  e.hit.visibility.assign(3);
+  e.gathered.light.assign(3);
+  for (std::size_t i = 0; i < 3; ++i) e.hit.visibility[i] = LightVisibility::traced;
   for (std::size_t i = 0; i < pending; ++i) e.pending.push_back(static_cast<Slot>(i));
   e.hit.back.reflected = reflected;
   e.hit.back.reflectWeight = {.5, .5, .5};

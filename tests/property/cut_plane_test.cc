@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "rayshade/trace/render.h"
+#include "rayshade/trace/trace_rays.h"
 #include "tests/support/render_text.h"
 #include "tests/support/seeded_random.h"
 
@@ -48,6 +49,14 @@ std::string shapesAt(double at, double side, double y, double z, int kind) {
   return text.str();
 }
 
+Hit hitOf(Scene& scene, const Ray& ray) {
+  FoundHit found;
+  NextBlock next;
+  TraceCounts counts;
+  traceRays(scene, std::span(&ray, 1), {}, std::span(&found, 1), std::span(&next, 1), counts);
+  return found.hit;
+}
+
 TEST(CutPlane, WhatEndsAtACutIsFoundOnBothSides) {
   constexpr std::array kOff{0.0, 1e-17, 1e-16, 1e-15, 1e-14, 1e-12};
   std::size_t found = 0, rays = 0;
@@ -70,14 +79,13 @@ TEST(CutPlane, WhatEndsAtACutIsFoundOnBothSides) {
         ray.origin = numbers.point(-20, 20);
         const Vec3 target{side * off, numbers.real(-3, 3), numbers.real(0.1, 0.9)};
         ray.direction = normalize(target - ray.origin);
-        const Hit expected = nearestHit(whole.model, whole.space(), ray, 0, kInfinity);
+        const Hit expected = hitOf(whole, ray);
         found += expected.found();
         ++rays;
-        for (const Scene& scene : cut) {
-          TraceCounts counts;
-          const Hit hit = followRay(scene.tree, scene.model, scene, ray, 0, counts).hit;
+        for (Scene& scene : cut) {
+          const Hit hit = hitOf(scene, ray);
           ASSERT_EQ(hit.object, expected.object)
-              << "off by " << side * off << ", ray " << n << ", " << voxelCount(scene.tree) << " voxels";
+              << "off by " << side * off << ", ray " << n << ", " << voxelCount(scene.tree()) << " voxels";
           ASSERT_EQ(hit.t, expected.t);
         }
       }

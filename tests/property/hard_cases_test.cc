@@ -212,7 +212,7 @@ TEST(HardCases, TheTableIsWholeAndNamesTestsThatAreThere) {
   }
   const std::string table = fileText("docs/hard-cases.md");
   std::set<std::string> cases;
-  const std::regex row(R"(\n\| ([A-F]\d+) \|([^\n]*))"), named(R"(`(\w+\.\w+)`)");
+  const std::regex row(R"(\n- ([A-F]\d+) ([^\n]*))"), named(R"(`(\w+\.\w+)`)");
   for (std::sregex_iterator at(table.begin(), table.end(), row), end; at != end; ++at) {
     EXPECT_TRUE(cases.insert((*at)[1]).second) << (*at)[1];
     const std::string cells = (*at)[2];

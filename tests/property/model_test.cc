@@ -1,7 +1,7 @@
 // nearestHit() and occlusion() find what a test of every object in turn finds: random scenes of all shapes, in nodes, in
 // definitions used several times and nested, and as operands of CSG.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "rayshade/intersect/model.h"
+#include "rayshade/intersect/bundle_hit.h"
 
 #include <gtest/gtest.h>
 
@@ -157,14 +157,12 @@ TEST(Model, VisitAndObstructionFindWhatATestOfEveryObjectFinds) {
       ASSERT_EQ(hit.object, nearest.object) << "scene " << scene << " ray " << i;
       hits += hit.found();
       dark += opaque;
-      // Whatever is asked first.
-      for (ObjectIndex hint : {kNone, hit.object, random.pick(objects)}) {
-        ObjectIndex occluder = hint;
-        const Occlusion met = occlusion(model, region, ray, tMin, tExit, occluder);
-        ASSERT_EQ(met.opaque, opaque) << "scene " << scene << " ray " << i;
-        if (!opaque) {
-          ASSERT_EQ(met.transparent, transparent);
-        }
+      Segment segment(ray, tMin, tExit);
+      Occlusion met;
+      occlusions(model, region, std::span(&segment, 1), std::span(&met, 1));
+      ASSERT_EQ(met.opaque, opaque) << "scene " << scene << " ray " << i;
+      if (!opaque) {
+        ASSERT_EQ(met.transparent, transparent);
       }
     }
   }

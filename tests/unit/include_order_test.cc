@@ -34,7 +34,7 @@ std::vector<Include> includesOf(const std::string& directory) {
 std::string folderOf(const std::string& file) { return file.substr(0, file.find_last_of('/')); }
 
 // Floors from the ground up: a folder may include its own files and those of any floor below, and nothing beside it unless
-// that is said.  The same picture stands in docs/architecture.md; `make graph` draws what the files really include.
+// that is said.  `make docs` copies the picture into docs/architecture.md.
 using Floors = std::vector<std::vector<std::string>>;
 const Floors& floors() {
   static const Floors all{

@@ -15,10 +15,10 @@ using Verdict = ShadeLedger::Verdict;
 Expect expectation(RecordId record) {
   Expect e;
   e.record = record;
-  e.hit.lit.assign(3);
-  e.hit.lit[0] = LightVisibility::none;
-  e.hit.lit[1] = LightVisibility::traced;
-  e.hit.lit[2] = LightVisibility::traced;
+  e.hit.visibility.assign(3);
+  e.hit.visibility[0] = LightVisibility::none;
+  e.hit.visibility[1] = LightVisibility::traced;
+  e.hit.visibility[2] = LightVisibility::traced;
   e.hit.back.transmitted = e.hit.back.reflected = true;
   e.gathered.light.assign(3);
   e.gathered.light[1] = {1, 2, 3};
@@ -78,7 +78,7 @@ TEST(ShadeLedger, WhatDoesNotFitIsRefused) {
   EXPECT_EQ(ledger.expect(expectation(9)), Verdict::refused) << "three light points where there are two";
   ledger.begin(3, 1);
   Expect wrong = expectation(9);
-  wrong.hit.lit[0] = static_cast<LightVisibility>(3);
+  wrong.hit.visibility[0] = static_cast<LightVisibility>(3);
   EXPECT_EQ(ledger.expect(std::move(wrong)), Verdict::refused) << "a light in no known state";
   EXPECT_EQ(ledger.expect(expectation(recordOf(1, 0))), Verdict::refused) << "found by nobody";
   EXPECT_EQ(ledger.expect(expectation(recordOf(0, 1u << 30))), Verdict::refused)

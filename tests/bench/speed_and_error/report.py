@@ -7,7 +7,7 @@ import os
 import shutil
 import subprocess
 
-from scenes import POINTS
+from scenes import KNOBS
 
 
 def curves(points):
@@ -47,7 +47,7 @@ def better(points, default):
 
 
 def factor(value, of):
-    return "-" if of is None else f"x {value / of:.2g}"
+    return "-" if of is None else f"{value / of:.2g}"
 
 
 def write_table(name, points):
@@ -104,29 +104,49 @@ plot {", ".join(plots)}
     return True
 
 
-def table_of_points(points):
-    lines = ["| knob | value | seconds | MRSE, with 95 % interval | RMSE | FLIP | error in equal time | time for equal error |",
-             "|---|---|---:|---|---:|---:|---:|---:|"]
+def time_for_equal_error(point, yardstick):
+    """As a factor of the time that turning `samples` takes for the same error; `-` where that curve does not reach."""
+    return factor(point.mean("seconds"), crossing(yardstick, "mrse", "seconds", point.mean("mrse")))
+
+
+def rows(points):
+    """The curves but `samples`, each value of a knob with what it is worth; the default is the measure."""
     yardstick = curves(points)["rayshade", "samples"]
-    by_command = {}  # a setting may lie on several curves
-    for p in points:
-        by_command.setdefault(p.command, []).append(p)
-    for same in by_command.values():
-        p = same[0]
-        seconds, mrse = p.mean("seconds"), p.mean("mrse")
-        low, high = p.interval("mrse")
-        bars = f" ({low:.2e} - {high:.2e})" if len(p.errors) > 1 else ""
-        knob = ", ".join(q.knob for q in same) if p.program == "rayshade" else p.program
-        value = ", ".join(f"`{q.value}`" for q in same)
-        if p.is_default and p.program == "rayshade":
-            knob, value = "all", "**default**"
-        against = ["", ""]
-        if p not in yardstick:
-            against = [factor(mrse, crossing(yardstick, "seconds", "mrse", seconds)),
-                       factor(seconds, crossing(yardstick, "mrse", "seconds", mrse))]
-        lines.append(f"| {knob} | {value} | {seconds:.3f} | {mrse:.2e}{bars} | {p.mean('rmse'):.2e} | "
-                     f"{p.mean('flip'):.4f} | {against[0]} | {against[1]} |")
+    return [((p.program, p.knob, p.value), time_for_equal_error(p, yardstick)) for p in points
+            if p not in yardstick and not (p.is_default and p.program == "rayshade")]
+
+
+def table_of_samples(measured):
+    """Time and error of the curve `samples`, scene by scene."""
+    lines = ["| scene | " + " | ".join(f"`{value}`" for value, _ in KNOBS["samples"]) + " |",
+             "|---|" + "---|" * len(KNOBS["samples"])]
+    for scene, points in measured.items():
+        by_value = {p.value: p for p in points if p.knob == "samples" and p.program == "rayshade"}
+        lines.append(f"| {scene} | " + " | ".join(
+            f"{by_value[value].mean('seconds'):.3f} s: {by_value[value].mean('mrse'):.1e}"
+            for value, _ in KNOBS["samples"]) + " |")
     return "\n".join(lines)
+
+
+def table_of_knobs(measured):
+    """What each value of each other knob is worth in each scene; without the contrast test `samples` is nearly the same."""
+    worth = {scene: dict(rows(points)) for scene, points in measured.items()}
+    keys = list(dict.fromkeys(key for scene in worth.values() for key in scene
+                              if key[0] == "rayshade" and key[1] != "samples, no test"))
+    keys.sort(key=lambda key: list(KNOBS).index(key[1]))
+    lines = ["| setting | " + " | ".join(worth) + " |", "|---|" + "---:|" * len(worth)]
+    for key in keys:
+        lines.append(f"| `{key[2]}` | " + " | ".join(scene.get(key, "") for scene in worth.values()) + " |")
+    return "\n".join(lines)
+
+
+def list_of_rivals(points):
+    """Time and error of the other programs, and what they are worth."""
+    worth = dict(rows(points))
+    return [f"{program}: " + "; ".join(
+        f"`{p.value}` {p.mean('seconds'):.3f} s, {p.mean('mrse'):.1e}, {worth[program, p.knob, p.value]}"
+        for p in points if p.program == program) + "."
+        for program in dict.fromkeys(p.program for p in points if p.program != "rayshade")]
 
 
 def slopes(points):
@@ -137,40 +157,42 @@ def slopes(points):
 def verdict(points, default):
     found = better(points, default)
     if not found:
-        return "The default lies on the Pareto front: no measured setting is both faster and more exact beyond the bars."
+        return []
     best = found[0]
-    return (f"The default is not on the Pareto front: {len(found)} of the settings are both faster and more exact, the best "
+    return [f"The default is not on the Pareto front: {len(found)} of the settings are both faster and more exact, the best "
             f"of them `{best.value}` with {best.mean('seconds') / default.mean('seconds'):.2f} times the time and "
-            f"{best.mean('mrse') / default.mean('mrse'):.2f} times the error. It stays where it is: it is what the "
-            f"language gives to a scene that says nothing, and such scenes shall look as they did in Rayshade 4.")
+            f"{best.mean('mrse') / default.mean('mrse'):.2f} times the error. It stays where it is: it is the "
+            f"language's default, and scenes without settings shall look as they did in Rayshade 4."]
 
 
-def section(scene, points, floor, rivals, plotted):
+def section(scene, points, floor, plotted):
     default = next(p for p in points if p.is_default and p.program == "rayshade")
     smallest = min(p.mean("mrse") for p in points if p.program == "rayshade")
-    text = [f"## {scene.title}", ""]
+    text = [f"## {scene.title}", "", f"{scene.name}, {scene.size[0]} x {scene.size[1]} pixels."]
     if scene.reference is None:
-        text.append("Reference: the exact picture, `tests/bench/area_light reference "
-                    f"{scene.size[0]} {scene.size[1]}`; the scene: `tests/bench/area_light scene {POINTS}`.")
+        text.append(f"Reference: the exact picture, `tests/bench/area_light reference {scene.size[0]} {scene.size[1]}`.")
     else:
         r = scene.reference
-        lights = f", area lights of {r.points} x {r.points} points" if scene.area_lights else ""
         text.append(
-            f"Reference: the mean of {scene.reference_seeds} pictures `{r.options()}`, seeds 1000 to "
-            f"{999 + scene.reference_seeds}{lights}: "
-            f"{scene.reference_seeds * r.samples ** 2} samples in a pixel. The means of its halves differ by an MRSE of "
-            f"{floor:.1e}, which makes {floor / 4:.1e} the error of the whole; that is 1/{smallest / (floor / 4):.0f} of the "
-            f"smallest error below.")
-    text += ["", f"{scene.size[0]} x {scene.size[1]} pixels. The default: `{default.command}`.", ""]
+            f"Reference: the mean of {scene.reference_seeds} pictures `{r.options()}`, seeds from 1000 on; its own error is "
+            f"{floor / 4:.1e}, 1/{smallest / (floor / 4):.0f} of the smallest one measured.")
+    text += [*verdict(points, default), slopes(points), ""]
     if plotted:
         text += [f"![{scene.title}: error against time](speed-and-error/{scene.name}.svg)", ""]
-    text += [verdict(points, default), "", slopes(points), "", table_of_points(points), ""]
-    for program, (ways, halves, apart) in rivals.items():
-        named = "`; `".join(f"{by} times the size, {options}" for by, options in ways)
-        text += [f"{program}: judged against what it converges to itself (two ways to that, `{named}`, differ by {halves:.1e}); our "
-                 f"own reference is {apart:.1e} away from that, because shading and highlights are defined differently. 16 bits a "
-                 f"channel and cut off at 1; no seeds, so no bars on the error.", ""]
     return "\n".join(text)
+
+
+def section_of_rivals(scene, points, rivals):
+    if not rivals:
+        return ""
+    text = [f"## Beside other programs: {scene.name}", "",
+            "Each is judged against what it converges to itself, because shading and highlights are defined differently: the error of "
+            "sampling alone. Two ways to its reference differ by " +
+            ", ".join(f"{halves:.1e} ({program})" for program, (_, halves, _) in rivals.items()) +
+            "; our reference is " + ", ".join(f"{apart:.1e} ({program})" for program, (_, _, apart) in rivals.items()) +
+            " away. Their pictures have 16 bits a channel and end at 1; they have no seeds. For each setting: time, MRSE, time for "
+            "equal error as in the table above.", ""]
+    return "\n".join(text + [f"- {line}" for line in list_of_rivals(points)] + [""])
 
 
 HEAD = """# Speed and error
@@ -178,24 +200,30 @@ HEAD = """# Speed and error
 Made by `make bench` ({command}) on {date}, {machine}, {minutes:.0f} minutes.
 Do not edit: change tests/bench/speed_and_error/.
 
-Every knob that trades time for error, turned alone with the others at the values that the language gives a scene that says
-nothing: `{default}`, area lights of {points} x {points} points (the language has no default for these).
+Every knob that trades time for error, turned alone. The others have the default values of the language, `{default}`,
+and area lights have {points} x {points} points. All figures, with their commands, are in speed-and-error/*.tsv;
+`tests/bench/speed_and_error/run --scene NAME N` prints the scene NAME-N.ray.
 
-- **Error** is that of sampling, in linear light: MRSE, the mean of (v - r)^2 / (|r| + 0.01)^2 over pixels and channels; beside it
-  RMSE and the mean of LDR-FLIP (`rayshade-error reference.pfm picture.pfm`). Geometric errors are another matter: [accuracy.md](accuracy.md).
-  Splitting a picture over tasks has no error: the same bits (docs/determinism.md), so what is faster there is faster at equal error.
-- **Time** is processor time, user and system, of the whole process, reading the scene included; other work on the machine widens its bars.
-  How time is spent: [speed.md](speed.md).
-- **Knobs**: *samples* is `-S`; *samples, no test* the same with `-T 0 0 0`, all samples in every pixel that is not uniform; *contrast*
-  `-T`, as factors of the default; *light points* those along each side of an area light, in the scene file; *cutoff* `-C`; *depth* `-D`.
-- **Points** are means over {seeds} seeds (`--seed 1` to `--seed {seeds}`), bars the 95 % interval of the mean by bootstrap.
-- **Slope** is that of log MRSE against log time over a whole curve. Plain Monte Carlo has -1, stratified sampling of
-  smooth things is steeper. A curve that flattens has a floor: the bias of the other knobs, or of the one that is turned.
-- **Error in equal time, time for equal error**: factors of what the curve *samples* has there, read off it between its points
-  in logarithms. Below 1 turning this knob pays more than turning `-S`, above 1 less; `-` where that curve does not reach.
+- **Error** is that of sampling, in linear light: MRSE, the mean of (v - r)^2 / (|r| + 0.01)^2 over pixels and channels. The .tsv files
+  have RMSE and LDR-FLIP, too (`rayshade-error reference.pfm picture.pfm`). Errors of geometry: [accuracy.md](accuracy.md).
+- **Time** is processor time of the whole process, the reading of the scene included.
+- **Knobs**: *samples* is `-S`; *samples, no test* the same with `-T 0 0 0`, all samples in every pixel; *contrast* is `-T` as a factor of
+  the default; *light points* are those of an area light; *cutoff* is `-C`, *depth* is `-D`.
+- **Points** are means over {seeds} seeds (`--seed 1` to `--seed {seeds}`); the bars of the plots are the 95 % interval of the mean by bootstrap.
+- **The default** of a scene lies on the Pareto front where nothing else is said: no setting is both faster and more exact beyond the
+  bars.
+- **Slope** is that of log MRSE against log time. Plain Monte Carlo has -1. A curve that flattens has a floor: the bias of a knob.
 
-The files speed-and-error/*.tsv hold all figures and the command of each. NAME-N.ray in it is what `tests/bench/speed_and_error/run
---scene NAME N` prints; interior and glass are rendered in scenes/gallery, because they name files there.
+## Time and error of `-S`
+
+{samples}
+
+## What the other knobs are worth
+
+Time as a factor of that in which *samples* has the same error: below 1 turning this knob pays more than turning `-S`, above 1 less; `-`
+where the curve *samples* does not reach.
+
+{knobs}
 
 """
 

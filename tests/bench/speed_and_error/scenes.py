@@ -7,7 +7,7 @@ import re
 
 from running import ROOT, run
 
-# The values that the language gives when a scene says nothing; every curve turns one knob and leaves the others here.
+# The default values of the language; every curve turns one knob and leaves the others here.
 SAMPLES, CONTRAST, CUTOFF, DEPTH, POINTS = 3, 1.0, 0.002, 5, 2
 CONTRAST_RGB = (0.2, 0.15, 0.3)
 

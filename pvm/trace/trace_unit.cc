@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pvm/trace/trace_unit.h"
+
+namespace rayshade {
+
+void TraceUnit::begin(TaskId host, Configure&& message, std::uint32_t cluster, std::uint32_t finder) {
+  at = {std::move(message.settings),
+        std::move(message.tree),
+        std::move(message.directory),
+        cluster,
+        message.exposure,
+        message.policy,
+        std::move(message.request),
+        std::move(message.cellBytes)};
+  cells.begin();
+  space.begin(message.cellBounds, context.link.self());
+  shades.begin(finder);
+  replies.begin(host);
+  shadows.begin();
+}
+
+void TraceUnit::setWeights(const Weights& message) {
+  if (message.epoch == context.epoch && message.shadeWeights.size() == at.directory.shadeTasks.size())
+    at.directory.shadeWeights = message.shadeWeights;
+}
+
+void TraceUnit::addTo(Report& report) const {
+  report.counts = counts;
+  report.combined = replies.combined();
+  report.cache = cache.counts();
+  report.shadowCache = space.shadowLookups();
+}
+
+}  // namespace rayshade

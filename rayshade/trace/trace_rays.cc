@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rayshade/trace/trace_rays.h"
+
+#include "rayshade/accel/bvh_bundle.h"
+#include "rayshade/intersect/nearer.h"
+
+namespace rayshade {
+namespace {
+
+constexpr double kFromTheStart[kBundleSize] = {};
+
+// Some rays of a bundle, as a bundle of their own.
+struct Part {
+  Segment segments[kBundleSize];
+  std::size_t from[kBundleSize];
+  std::size_t size = 0;
+
+  Part(std::span<const Segment> all, RaySet rays) {
+    forEachRay(rays, [&](std::size_t i) {
+      from[size] = i;
+      segments[size++] = all[i];
+    });
+  }
+  std::span<Segment> rays() { return std::span(segments).first(size); }
+};
+
+// A block that was not local when some rays came to it.
+struct Absent {
+  std::uint32_t block;
+  RaySet rays;
+};
+
+// The rays that might meet something in these blocks.
+RaySet reaching(const BlockMap& map, std::span<const Absent> absent, std::span<const Segment> segments,
+                std::span<const double> begin) {
+  RaySet rays = 0;
+  for (const Absent& a : absent) {
+    forEachRay(a.rays & ~rays, [&](std::size_t i) {
+      if (mayMeet(map.box(a.block), segments[i].ray, begin[i], segments[i].tMax)) rays |= RaySet{1} << i;
+    });
+  }
+  return rays;
+}
+
+// The region of the only block there is, if it is local; there is no need to look for it.
+RegionRef onlyRegion(LocalSpace& space, std::size_t rays, RayKind kind) {
+  return space.blocks().blocks().size() == 1 ? space.region(0, rays, kind) : RegionRef{};
+}
+
+}  // namespace
+
+RaySet nearestLocalHits(LocalSpace& space, std::span<Segment> segments, std::span<const double> begin,
+                        RayKind kind, std::span<FoundHit> found, TraceCounts& counts, Processor processor) {
+  const BlockMap& map = space.blocks();
+  if (const RegionRef only = onlyRegion(space, segments.size(), kind); only.region != nullptr) {
+    Hit hits[kBundleSize];
+    nearestHits(*only.model, *only.region, segments, hits, processor);
+    counts.visits += segments.size();
+    for (std::size_t i = 0; i < segments.size(); ++i) {
+      counts.tests += hits[i].tests;
+      found[i] = {hits[i], only.model, true};
+    }
+    return 0;
+  }
+  std::fill_n(found.begin(), segments.size(), FoundHit{});
+  std::vector<Absent> absent;
+  const auto visitBlocks = [&]() RAYSHADE_INLINE {
+    map.bvh().nearest(segments, [&](std::uint32_t first, std::uint32_t count, RaySet asking) {
+      RaySet improved = 0;
+      for (const std::uint32_t block : map.bvh().order().subspan(first, count)) {
+        const RegionRef local = space.region(block, static_cast<std::size_t>(std::popcount(asking)), kind);
+        if (local.region == nullptr) {
+          absent.push_back({block, asking});
+          continue;
+        }
+        Part part(segments, asking);
+        // What was found elsewhere at the same t may have to give way.
+        for (std::size_t k = 0; k < part.size; ++k)
+          if (found[part.from[k]].hit.found())
+            part.segments[k].tMax = std::nextafter(part.segments[k].tMax, kInfinity);
+        Hit hits[kBundleSize];
+        nearestHits(*local.model, *local.region, part.rays(), hits, processor);
+        counts.visits += part.size;
+        for (std::size_t k = 0; k < part.size; ++k) {
+          const std::size_t i = part.from[k];
+          counts.tests += hits[k].tests;
+          FoundHit& best = found[i];
+          if (!hits[k].found() ||
+              !nearer(hits[k].t, local.model->store().object(hits[k].object), segments[i].tMax,
+                      best.hit.found() ? &best.model->store().object(best.hit.object) : nullptr))
+            continue;
+          best.hit = hits[k];
+          best.model = local.model;
+          segments[i].tMax = hits[k].t;
+          improved |= RaySet{1} << i;
+        }
+      }
+      return improved;
+    });
+  };
+  onProcessor(processor, visitBlocks);
+  return reaching(map, absent, segments, begin);
+}
+
+LocalOcclusion localOcclusion(LocalSpace& space, std::span<Segment> segments, std::span<const double> begin,
+                              TraceCounts& counts, Processor processor) {
+  const BlockMap& map = space.blocks();
+  LocalOcclusion met;
+  const auto note = [&](std::size_t i, const Occlusion& occlusion) {
+    counts.tests += occlusion.tests;
+    if (occlusion.opaque) met.opaque |= RaySet{1} << i;
+    if (occlusion.transparent) met.transparent |= RaySet{1} << i;
+  };
+  Occlusion occlusion[kBundleSize];
+  if (const RegionRef only = onlyRegion(space, segments.size(), RayKind::shadow); only.region != nullptr) {
+    occlusions(*only.model, *only.region, segments, occlusion, processor);
+    counts.visits += segments.size();
+    for (std::size_t i = 0; i < segments.size(); ++i) note(i, occlusion[i]);
+    met.open = map.reachingOthers(segments, begin) & ~met.opaque;
+    return met;
+  }
+  std::vector<Absent> absent;
+  const auto visitBlocks = [&]() RAYSHADE_INLINE {
+    map.bvh().any(segments, [&](std::uint32_t first, std::uint32_t count, RaySet asking) {
+      for (const std::uint32_t block : map.bvh().order().subspan(first, count)) {
+        const RaySet left = asking & ~met.opaque;
+        if (left == 0) break;
+        const RegionRef local =
+            space.region(block, static_cast<std::size_t>(std::popcount(left)), RayKind::shadow);
+        if (local.region == nullptr) {
+          absent.push_back({block, left});
+          continue;
+        }
+        Part part(segments, left);
+        occlusions(*local.model, *local.region, part.rays(), occlusion, processor);
+        counts.visits += part.size;
+        for (std::size_t k = 0; k < part.size; ++k) note(part.from[k], occlusion[k]);
+      }
+      return asking & met.opaque;
+    });
+  };
+  onProcessor(processor, visitBlocks);
+  for (Absent& a : absent) a.rays &= ~met.opaque;
+  met.open = (reaching(map, absent, segments, begin) | map.reachingOthers(segments, begin)) & ~met.opaque;
+  return met;
+}
+
+void traceRays(LocalSpace& space, std::span<const Ray> rays, std::span<const double> begin,
+               std::span<FoundHit> found, std::span<NextBlock> next, TraceCounts& counts) {
+  if (begin.empty()) begin = kFromTheStart;
+  Segment segments[kBundleSize];
+  for (std::size_t i = 0; i < rays.size(); ++i) segments[i] = Segment(rays[i]);
+  const std::span all = std::span(segments).first(rays.size());
+  RaySet open = nearestLocalHits(space, all, begin, RayKind::nearest, found, counts);
+  open |= space.blocks().reachingOthers(all, begin);
+  forEachRay(open, [&](std::size_t i) {
+    if (const auto at = nextBlock(space, segments[i].ray, begin[i], found[i].hit.t)) {
+      found[i].resolved = false;
+      next[i] = *at;
+    }
+  });
+  for (const FoundHit& f : found.first(rays.size())) counts.hits += f.resolved && f.hit.found();
+}
+
+}  // namespace rayshade
