@@ -47,22 +47,21 @@ struct TraceUnit {
   Replies replies;
   ShadowBundles shadows;
   HitShader shader;
+  FoundHits found;  // room
 };
 
 template <class Queue, class GoesOn>
 void TraceUnit::trace(std::span<Ray> rays, std::span<const double> begin, std::span<const ReplyTo> to,
                       Queue queue, GoesOn goesOn) {
-  FoundHit found[kBundleSize];
-  NextBlock next[kBundleSize];
-  traceRays(space, rays, begin, found, next, counts);
+  traceRays(space, rays, begin, found, counts);
   RayHit hits[kBundleSize];
   ReplyTo replyOf[kBundleSize];
   std::size_t count = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    if (!found[i].resolved) {
-      goesOn(i, next[i]);
-    } else if (found[i].hit.found()) {
-      hits[count] = {&rays[i], found[i].hit, found[i].model};
+    if (!found.resolved(i)) {
+      goesOn(i, found.next[i]);
+    } else if (found.hits[i].found()) {
+      hits[count] = {&rays[i], found.hits[i], found.models[i]};
       replyOf[count++] = to[i];
     } else {
       replies.answer(to[i], missed(rays[i], at.settings));

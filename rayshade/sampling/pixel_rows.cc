@@ -32,6 +32,14 @@ SamplingRules samplingRules(const PictureSpec& spec, std::uint64_t seed, std::ui
           area->height + (refining ? 1 : 0)};
 }
 
+void PixelRows::demandAll(Row& row, Pixel& pixel) {
+  pixel.full = true;
+  if (!isWhole(pixel)) ++row.incomplete;
+  const bool firstCounted = (pixel.given & pixel.firstBit()) != 0;
+  counts.needed += static_cast<std::uint64_t>(rules_.side * rules_.side - firstCounted);
+  if (rules_.side > 1) ++counts.supersampled;
+}
+
 void PixelRows::add() {
   const PixelArea& area = rules_.area;
   const std::int32_t cells = rules_.side * rules_.side, y = end();
@@ -45,7 +53,7 @@ void PixelRows::add() {
   for (std::int32_t x = 0; x < area.width; ++x) {
     const bool side = x == 0 || x == area.width - 1, end = y == 0 || y == area.height - 1;
     if (y < area.height && (side || end || !rules_.refining)) {
-      demandAll({y, x});
+      demandAll(row, row.pixels[static_cast<std::size_t>(x)]);
     } else if (!side) {
       ++counts.needed;
       if (cells == 1) continue;
@@ -57,22 +65,14 @@ void PixelRows::add() {
   }
 }
 
-void PixelRows::demandAll(Place place) {
-  Pixel& pixel = at(place);
-  pixel.full = true;
-  if (!isWhole(pixel)) ++rowOf(place).incomplete;
-  const bool firstCounted = (pixel.given & pixel.firstBit()) != 0;
-  counts.needed += static_cast<std::uint64_t>(rules_.side * rules_.side - firstCounted);
-  if (rules_.side > 1) ++counts.supersampled;
-}
-
 std::optional<Place> PixelRows::supply(const SampleId& id, Color color) {
   const std::int32_t side = rules_.side;
   const std::int64_t x = std::int64_t{id.x} - rules_.area.x, y = std::int64_t{id.y} - rules_.area.y;
   if (x < 0 || x >= rules_.area.width || y < first_ || y >= end() || id.cell < 0 || id.cell >= side * side)
     return std::nullopt;
   const Place place{static_cast<std::int32_t>(y), static_cast<std::int32_t>(x)};
-  Pixel& pixel = at(place);
+  Row& row = rowOf(place);
+  Pixel& pixel = row.pixels[static_cast<std::size_t>(x)];
   const std::uint64_t bit = std::uint64_t{1} << id.cell;
   if ((pixel.given & bit) == 0 || (pixel.come & bit) != 0) return std::nullopt;
   pixel.come |= bit;
@@ -91,7 +91,7 @@ std::optional<Place> PixelRows::supply(const SampleId& id, Color color) {
     pixel.samples = std::make_unique<Color[]>(1);
     pixel.samples[0] = whole;
   }
-  if (pixel.full) --rowOf(place).incomplete;
+  if (pixel.full) --row.incomplete;
   return place;
 }
 

@@ -65,8 +65,9 @@ class PixelRows {
   const Pixel& at(Place place) const { return const_cast<PixelRows*>(this)->at(place); }
   bool isWhole(const Pixel& pixel) const { return pixel.come == rules_.allCells; }
 
-  void add();                   // the next row
-  void demandAll(Place place);  // samples of a pixel
+  void add();  // the next row
+  // All samples of a pixel are wanted.
+  void demandAll(Place place) { demandAll(rowOf(place), at(place)); }
   // The colour of a sample.  Its place, if more is known of the pixel than before.
   std::optional<Place> supply(const SampleId& id, Color color);
   // The first row, and its memory is used again.  False: it still waits for samples.
@@ -78,6 +79,7 @@ class PixelRows {
     std::int32_t incomplete = 0;  // full pixels that still wait for samples
   };
 
+  void demandAll(Row& row, Pixel& pixel);
   Row& rowOf(Place place) { return rows_[static_cast<std::size_t>(place.y - first_)]; }
   Color filtered(const Pixel& pixel) const;
 

@@ -38,28 +38,28 @@ std::size_t Sampler::next(std::span<SampleId> out) {
   return count;
 }
 
-bool Sampler::give(SampleId& out) {
-  if (finished()) return false;
-  if (!demanded_.empty()) {
-    const Place place = demanded_.front();
-    givePixel(place, out);
-    if (rows_.at(place).given == rows_.rules().allCells) demanded_.pop_front();
-    return true;
-  }
-  if (giveAhead(out)) return true;
-  for (; !guesses_.empty(); guesses_.erase(guesses_.begin()))
-    if (givePixel(*guesses_.begin(), out)) return true;
-  return false;
-}
-
 // The first cell of a pixel that has not been given yet.
-bool Sampler::givePixel(Place place, SampleId& out) {
-  Pixel& pixel = rows_.at(place);
+inline bool Sampler::giveCell(Pixel& pixel, Place place, SampleId& out) {
   if (pixel.given == rows_.rules().allCells) return false;
   const int cell = std::countr_one(pixel.given);
   pixel.given |= std::uint64_t{1} << cell;
   out = {area().x + place.x, area().y + place.y, cell};
   return true;
+}
+
+bool Sampler::give(SampleId& out) {
+  if (finished()) return false;
+  if (!demanded_.empty()) {
+    const Place place = demanded_.front();
+    Pixel& pixel = rows_.at(place);
+    giveCell(pixel, place, out);
+    if (pixel.given == rows_.rules().allCells) demanded_.pop_front();
+    return true;
+  }
+  if (giveAhead(out)) return true;
+  for (; !guesses_.empty(); guesses_.erase(guesses_.begin()))
+    if (giveCell(rows_.at(*guesses_.begin()), *guesses_.begin(), out)) return true;
+  return false;
 }
 
 // All samples of a pixel of the border, the first of any other, band by band and block by block.
@@ -76,7 +76,7 @@ bool Sampler::giveAhead(SampleId& out) {
     Pixel& pixel = rows_.at(place);
     const bool idle = place.y == area().height && (place.x == 0 || place.x == area().width - 1);
     if (pixel.full) {
-      found = givePixel(place, out);
+      found = giveCell(pixel, place, out);
     } else if (!idle) {
       found = true;
       pixel.given = pixel.firstBit();

@@ -44,7 +44,7 @@ class Sampler {
 
  private:
   bool give(SampleId& out);
-  bool givePixel(Place place, SampleId& out);
+  bool giveCell(Pixel& pixel, Place place, SampleId& out);
   bool giveAhead(SampleId& out);
   void stepAhead();
 

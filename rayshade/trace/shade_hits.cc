@@ -21,30 +21,30 @@ void evaluate(const RayHit& hit, const SceneSettings& settings, const ShadingWor
   at.light.assign(points);
 }
 
-// The shadow rays of all hits to one light point.  On return `through` is what arrives at each hit; those of which that is not
-// known have one pending shadow ray more.
-void traceLightPoint(LocalSpace& space, std::span<ShadedHit> shaded, std::span<const LightSample> samples,
-                     std::span<const LightVisibility> visibility, const SceneSettings& settings,
-                     std::size_t row, std::span<Color> through, ShadingRoom& room, TraceCounts& counts) {
-  Segment segments[kBundleSize];
-  Color arriving[kBundleSize];
-  std::size_t from[kBundleSize], count = 0;  // which hit asks
+// The shadow rays of all hits to one light point, which have been looked at.  On return room.through is what arrives at each hit;
+// those of which that is not known have one pending shadow ray more.
+void traceLightPoint(LocalSpace& space, std::span<ShadedHit> shaded, const SceneSettings& settings,
+                     std::size_t row, ShadingRoom& room, TraceCounts& counts) {
+  std::size_t count = 0;
   for (std::size_t i = 0; i < shaded.size(); ++i) {
-    through[i] = kWhite;
-    if (visibility[i] != LightVisibility::traced) continue;
-    segments[count] = {originOff(shaded[i].point, samples[i].shadowToward), samples[i].shadowToward,
-                       samples[i].shadowDistance, shaded[i].ray->moment};
-    arriving[count] = kWhite;
-    from[count++] = i;
+    room.through[i] = kWhite;
+    if (room.visibility[i] != LightVisibility::traced) continue;
+    const LightSample& sample = room.samples[i];
+    room.segments[count] = {originOff(shaded[i].point, sample.shadowToward), sample.shadowToward,
+                            sample.shadowDistance, shaded[i].ray->moment};
+    room.arriving[count] = kWhite;
+    room.from[count++] = i;
   }
+  if (count == 0) return;
   counts.shadowRays += count;
-  traceShadows(space, std::span(segments).first(count), {}, settings, std::span(arriving).first(count),
-               room.open, counts, [&](std::size_t k) {
-                 return shadowRay(*shaded[from[k]].ray, shaded[from[k]].point, samples[from[k]]);
+  traceShadows(space, std::span(room.segments).first(count), {}, settings, room.arriving, room.open, counts,
+               [&](std::size_t k) {
+                 const ShadedHit& at = shaded[room.from[k]];
+                 return shadowRay(*at.ray, at.point, room.samples[room.from[k]]);
                });
-  for (std::size_t k = 0; k < count; ++k) through[from[k]] = arriving[k];
+  for (std::size_t k = 0; k < count; ++k) room.through[room.from[k]] = room.arriving[k];
   for (OpenShadow& open : room.open)
-    shaded[from[open.index]].pending.push_back({row, std::move(open.shadow), *open.next});
+    shaded[room.from[open.index]].pending.push_back({row, std::move(open.shadow), *open.next});
 }
 
 }  // namespace
@@ -56,31 +56,30 @@ void shadeHits(LocalSpace& space, std::span<const RayHit> hits, const SceneSetti
   for (std::size_t i = 0; i < hits.size(); ++i) evaluate(hits[i], settings, work, points, shaded[i]);
   forEachLightPoint(settings, [&](const LightPoint& point) {
     const LightSource& light = settings.lights[point.light];
-    std::array<LightSample, kBundleSize> samples;
-    std::array<LightVisibility, kBundleSize> visibility;
     std::visit(
         [&](const auto& kind) {
           for (std::size_t i = 0; i < shaded.size(); ++i) {
             const Ray& ray = *shaded[i].ray;
-            samples[i] =
+            room.samples[i] =
                 kind.sample(lightQuery(shaded[i].point.position, ray.key, ray.sample, point.light, settings),
                             point.index);
-            visibility[i] = visibilityOf(light, samples[i], shaded[i].point, settings);
+            room.visibility[i] = visibilityOf(light, room.samples[i], shaded[i].point, settings);
           }
         },
         light.kind);
-    Color through[kBundleSize];
-    traceLightPoint(space, shaded, samples, visibility, settings, point.row, through, room, counts);
+    traceLightPoint(space, shaded, settings, point.row, room, counts);
     for (std::size_t i = 0; i < shaded.size(); ++i) {
       ShadedHit& at = shaded[i];
+      const LightVisibility visibility = room.visibility[i];
+      const Color through = room.through[i];
       if (work.records) {
-        at.visibility[point.row] = visibility[i];
-        at.light[point.row] = through[i];
+        at.visibility[point.row] = visibility;
+        at.light[point.row] = through;
       }
-      if (!work.sums || visibility[i] == LightVisibility::none || through[i] == kBlack || !at.pending.empty())
+      if (!work.sums || visibility == LightVisibility::none || through == kBlack || !at.pending.empty())
         continue;
-      at.sum = addLight(at.sum, at.point.surface, at.facing, samples[i].toward,
-                        samples[i].factor * (light.color * through[i]));
+      at.sum = addLight(at.sum, at.point.surface, at.facing, room.samples[i].toward,
+                        room.samples[i].factor * (light.color * through));
     }
   });
   for (ShadedHit& at : shaded) {

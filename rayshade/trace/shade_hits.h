@@ -48,8 +48,14 @@ struct ShadingWork {
   bool records = false;  // keep visibility and light, for those who may have to add them later
 };
 
-// Room that is used again from bundle to bundle.
+// Room that is used again from bundle to bundle: for one light point, by hit, and for its shadow rays.
 struct ShadingRoom {
+  std::array<LightSample, kBundleSize> samples;
+  std::array<LightVisibility, kBundleSize> visibility;
+  std::array<Color, kBundleSize> through;  // what arrives at each hit
+  std::array<Segment, kBundleSize> segments;
+  std::array<Color, kBundleSize> arriving;
+  std::array<std::size_t, kBundleSize> from;  // which hit asks
   std::vector<OpenShadow> open;
 };
 

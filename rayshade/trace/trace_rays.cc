@@ -50,19 +50,17 @@ RegionRef onlyRegion(LocalSpace& space, std::size_t rays, RayKind kind) {
 }  // namespace
 
 RaySet nearestLocalHits(LocalSpace& space, std::span<Segment> segments, std::span<const double> begin,
-                        RayKind kind, std::span<FoundHit> found, TraceCounts& counts, Processor processor) {
+                        RayKind kind, std::span<Hit> hits, std::span<const Model*> models,
+                        TraceCounts& counts, Processor processor) {
   const BlockMap& map = space.blocks();
   if (const RegionRef only = onlyRegion(space, segments.size(), kind); only.region != nullptr) {
-    Hit hits[kBundleSize];
     nearestHits(*only.model, *only.region, segments, hits, processor);
+    std::fill_n(models.begin(), segments.size(), only.model);
     counts.visits += segments.size();
-    for (std::size_t i = 0; i < segments.size(); ++i) {
-      counts.tests += hits[i].tests;
-      found[i] = {hits[i], only.model, true};
-    }
+    for (const Hit& hit : hits.first(segments.size())) counts.tests += hit.tests;
     return 0;
   }
-  std::fill_n(found.begin(), segments.size(), FoundHit{});
+  std::fill_n(hits.begin(), segments.size(), Hit{});
   std::vector<Absent> absent;
   const auto visitBlocks = [&]() RAYSHADE_INLINE {
     map.bvh().nearest(segments, [&](std::uint32_t first, std::uint32_t count, RaySet asking) {
@@ -76,22 +74,21 @@ RaySet nearestLocalHits(LocalSpace& space, std::span<Segment> segments, std::spa
         Part part(segments, asking);
         // What was found elsewhere at the same t may have to give way.
         for (std::size_t k = 0; k < part.size; ++k)
-          if (found[part.from[k]].hit.found())
+          if (hits[part.from[k]].found())
             part.segments[k].tMax = std::nextafter(part.segments[k].tMax, kInfinity);
-        Hit hits[kBundleSize];
-        nearestHits(*local.model, *local.region, part.rays(), hits, processor);
+        Hit met[kBundleSize];
+        nearestHits(*local.model, *local.region, part.rays(), met, processor);
         counts.visits += part.size;
         for (std::size_t k = 0; k < part.size; ++k) {
           const std::size_t i = part.from[k];
-          counts.tests += hits[k].tests;
-          FoundHit& best = found[i];
-          if (!hits[k].found() ||
-              !nearer(hits[k].t, local.model->store().object(hits[k].object), segments[i].tMax,
-                      best.hit.found() ? &best.model->store().object(best.hit.object) : nullptr))
+          counts.tests += met[k].tests;
+          if (!met[k].found() ||
+              !nearer(met[k].t, local.model->store().object(met[k].object), segments[i].tMax,
+                      hits[i].found() ? &models[i]->store().object(hits[i].object) : nullptr))
             continue;
-          best.hit = hits[k];
-          best.model = local.model;
-          segments[i].tMax = hits[k].t;
+          hits[i] = met[k];
+          models[i] = local.model;
+          segments[i].tMax = met[k].t;
           improved |= RaySet{1} << i;
         }
       }
@@ -145,21 +142,21 @@ LocalOcclusion localOcclusion(LocalSpace& space, std::span<Segment> segments, st
   return met;
 }
 
-void traceRays(LocalSpace& space, std::span<const Ray> rays, std::span<const double> begin,
-               std::span<FoundHit> found, std::span<NextBlock> next, TraceCounts& counts) {
+void traceRays(LocalSpace& space, std::span<const Ray> rays, std::span<const double> begin, FoundHits& found,
+               TraceCounts& counts) {
   if (begin.empty()) begin = kFromTheStart;
-  Segment segments[kBundleSize];
+  const std::span segments = std::span(found.segments).first(rays.size());
   for (std::size_t i = 0; i < rays.size(); ++i) segments[i] = Segment(rays[i]);
-  const std::span all = std::span(segments).first(rays.size());
-  RaySet open = nearestLocalHits(space, all, begin, RayKind::nearest, found, counts);
-  open |= space.blocks().reachingOthers(all, begin);
+  RaySet open = nearestLocalHits(space, segments, begin, RayKind::nearest, found.hits, found.models, counts);
+  open |= space.blocks().reachingOthers(segments, begin);
+  found.open = 0;
   forEachRay(open, [&](std::size_t i) {
-    if (const auto at = nextBlock(space, segments[i].ray, begin[i], found[i].hit.t)) {
-      found[i].resolved = false;
-      next[i] = *at;
+    if (const auto at = nextBlock(space, segments[i].ray, begin[i], found.hits[i].t)) {
+      found.open |= RaySet{1} << i;
+      found.next[i] = *at;
     }
   });
-  for (const FoundHit& f : found.first(rays.size())) counts.hits += f.resolved && f.hit.found();
+  for (std::size_t i = 0; i < rays.size(); ++i) counts.hits += found.hits[i].found() && found.resolved(i);
 }
 
 }  // namespace rayshade

@@ -8,30 +8,37 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
+
 #include "rayshade/trace/local_space.h"
 #include "rayshade/trace/trace_counts.h"
 
 namespace rayshade {
 
-// What a ray meets first among all that is local.
-struct FoundHit {
-  Hit hit;
-  const Model* model = nullptr;  // of the hit
-  bool resolved = true;          // else something that is not local may be nearer
+// What the rays of a bundle meet first among all that is local, side by side.  Room that is used again.
+struct FoundHits {
+  std::array<Hit, kBundleSize> hits;
+  std::array<const Model*, kBundleSize> models;  // of the hits that there are
+  // The rays that are not resolved: something that is not local may be nearer; and where they go on.
+  RaySet open = 0;
+  std::array<NextBlock, kBundleSize> next;
+  std::array<Segment, kBundleSize> segments;  // of the rays, up to what they have met
+
+  bool resolved(std::size_t ray) const { return (open >> ray & 1) == 0; }
 };
 
 // Traces at most kBundleSize rays.  `begin[i]`: before this t nothing counts that is not local (it has been looked at); empty: 0 for
-// all.  `next[i]` is set for the rays that are not resolved: where they go on.
-void traceRays(LocalSpace& space, std::span<const Ray> rays, std::span<const double> begin,
-               std::span<FoundHit> found, std::span<NextBlock> next, TraceCounts& counts);
+// all.
+void traceRays(LocalSpace& space, std::span<const Ray> rays, std::span<const double> begin, FoundHits& found,
+               TraceCounts& counts);
 
 // The two questions of the core, for segments that are at hand.
 //
 // The nearest hits among all that is local; the segments' tMax become their t.  Answers with the segments that might meet
 // something nearer, from begin[i] on, in a block that is not local.
 RaySet nearestLocalHits(LocalSpace& space, std::span<Segment> segments, std::span<const double> begin,
-                        RayKind kind, std::span<FoundHit> found, TraceCounts& counts,
-                        Processor processor = thisProcessor());
+                        RayKind kind, std::span<Hit> hits, std::span<const Model*> models,
+                        TraceCounts& counts, Processor processor = thisProcessor());
 
 // What stands on the segments: something opaque, or only something transparent, that is local; `open`: something that is not
 // local might, from begin[i] on.

@@ -11,15 +11,17 @@ void filterShadows(LocalSpace& space, std::vector<OpenShadow>& open, const Scene
     if (o.shadow.last < o.limit) going[count++] = &o;
   while (count > 0) {
     Segment segments[kBundleSize];
-    FoundHit found[kBundleSize];
+    Hit hits[kBundleSize];
+    const Model* models[kBundleSize];
     for (std::size_t i = 0; i < count; ++i)
       segments[i] = Segment(going[i]->shadow.ray, going[i]->shadow.last, going[i]->limit);
     // What is not local lies behind the limits.
-    nearestLocalHits(space, std::span(segments).first(count), kFromTheStart, RayKind::shadow, found, counts);
+    nearestLocalHits(space, std::span(segments).first(count), kFromTheStart, RayKind::shadow, hits, models,
+                     counts);
     std::size_t left = 0;
     for (std::size_t i = 0; i < count; ++i) {
-      if (!found[i].hit.found()) continue;
-      if (passSurface(*found[i].model, found[i].hit, going[i]->shadow, settings)) {
+      if (!hits[i].found()) continue;
+      if (passSurface(*models[i], hits[i], going[i]->shadow, settings)) {
         going[left++] = going[i];
       } else {
         going[i]->dark = true;

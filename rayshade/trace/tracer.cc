@@ -25,8 +25,6 @@ struct OnwardBundle {
 
 // What is needed at one depth.
 struct Tracer::Stage {
-  std::array<FoundHit, kBundleSize> found;
-  std::array<NextBlock, kBundleSize> next;
   std::array<RayHit, kBundleSize> hits;
   std::array<Color*, kBundleSize> goals;  // of the hits
   std::array<ShadedHit, kBundleSize> shaded;
@@ -41,12 +39,11 @@ Tracer::~Tracer() = default;
 void Tracer::trace(std::span<const Ray> rays, std::span<Color> seen, std::size_t depth) {
   if (depth == stages_.size()) stages_.push_back(std::make_unique<Stage>());
   Stage& stage = *stages_[depth];
-  traceRays(space_, rays, {}, stage.found, stage.next, counts_);
+  traceRays(space_, rays, {}, found_, counts_);
   std::size_t count = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    const FoundHit& found = stage.found[i];
-    if (found.hit.found()) {
-      stage.hits[count] = {&rays[i], found.hit, found.model};
+    if (found_.hits[i].found()) {
+      stage.hits[count] = {&rays[i], found_.hits[i], found_.models[i]};
       stage.goals[count++] = &seen[i];
     } else {
       seen[i] = missed(rays[i], settings_);

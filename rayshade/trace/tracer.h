@@ -25,6 +25,7 @@ class Tracer {
   LocalSpace& space_;
   const SceneSettings& settings_;
   TraceCounts& counts_;
+  FoundHits found_;  // of the bundle that is traced now
   ShadingRoom room_;
   std::vector<std::unique_ptr<Stage>>
       stages_;  // by depth of the recursion; kept, so that no ray takes memory

@@ -50,11 +50,10 @@ std::string shapesAt(double at, double side, double y, double z, int kind) {
 }
 
 Hit hitOf(Scene& scene, const Ray& ray) {
-  FoundHit found;
-  NextBlock next;
+  FoundHits found;
   TraceCounts counts;
-  traceRays(scene, std::span(&ray, 1), {}, std::span(&found, 1), std::span(&next, 1), counts);
-  return found.hit;
+  traceRays(scene, std::span(&ray, 1), {}, found, counts);
+  return found.hits[0];
 }
 
 TEST(CutPlane, WhatEndsAtACutIsFoundOnBothSides) {

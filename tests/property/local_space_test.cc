@@ -140,25 +140,30 @@ std::vector<Ray> randomBundle(Random& numbers, std::size_t count) {
   return rays;
 }
 
-std::optional<ObjectId> idOf(const FoundHit& found) {
-  if (!found.hit.found()) return std::nullopt;
-  return found.model->store().object(found.hit.object).id;
-}
-
 struct Traced {
-  std::vector<FoundHit> found;
-  std::vector<NextBlock> next;
+  Hit hit;
+  std::optional<ObjectId> id;  // of the object
+  bool resolved = false;
+  NextBlock next{};
 };
-Traced traceBundle(LocalSpace& space, const std::vector<Ray>& rays, const std::vector<double>& begin) {
-  Traced traced{std::vector<FoundHit>(rays.size()), std::vector<NextBlock>(rays.size())};
+std::vector<Traced> traceBundle(LocalSpace& space, const std::vector<Ray>& rays,
+                                const std::vector<double>& begin) {
+  FoundHits found;
   TraceCounts counts;
-  traceRays(space, rays, begin, traced.found, traced.next, counts);
+  traceRays(space, rays, begin, found, counts);
+  std::vector<Traced> traced(rays.size());
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    traced[i].hit = found.hits[i];
+    if (found.hits[i].found()) traced[i].id = found.models[i]->store().object(found.hits[i].object).id;
+    traced[i].resolved = found.resolved(i);
+    if (!traced[i].resolved) traced[i].next = found.next[i];
+  }
   return traced;
 }
 
-void expectSame(const FoundHit& got, const FoundHit& expected) {
+void expectSame(const Traced& got, const Traced& expected) {
   ASSERT_EQ(got.hit.t, expected.hit.t);
-  ASSERT_EQ(idOf(got), idOf(expected));
+  ASSERT_EQ(got.id, expected.id);
 }
 
 TEST(LocalSpace, WhatIsResolvedIsRight) {
@@ -172,15 +177,16 @@ TEST(LocalSpace, WhatIsResolvedIsRight) {
     for (std::size_t round = 0; round < 12; ++round) {
       SCOPED_TRACE(testing::Message() << "seed " << seed << " round " << round);
       const std::vector<Ray> rays = randomBundle(numbers, 1 + (seed + 5 * round) % kBundleSize);
-      const Traced expected = traceBundle(scene.whole, rays, {}), got = traceBundle(task, rays, {});
+      const std::vector<Traced> expected = traceBundle(scene.whole, rays, {}),
+                                got = traceBundle(task, rays, {});
       for (std::size_t i = 0; i < rays.size(); ++i) {
-        ASSERT_TRUE(expected.found[i].resolved);
-        if (got.found[i].resolved) {
-          expectSame(got.found[i], expected.found[i]);
-          ++(expected.found[i].hit.found() ? hits : misses);
+        ASSERT_TRUE(expected[i].resolved);
+        if (got[i].resolved) {
+          expectSame(got[i], expected[i]);
+          ++(expected[i].hit.found() ? hits : misses);
         } else {
-          ASSERT_GE(got.found[i].hit.t, expected.found[i].hit.t);
-          task.check(got.next[i], Segment(rays[i]).ray, 0);
+          ASSERT_GE(got[i].hit.t, expected[i].hit.t);
+          task.check(got[i].next, Segment(rays[i]).ray, 0);
           ++open;
         }
       }
@@ -200,17 +206,17 @@ TEST(LocalSpace, FetchingWhatIsMissingFindsTheSame) {
       SCOPED_TRACE(testing::Message() << "seed " << seed << " ray " << n);
       const std::vector<Ray> ray = randomBundle(numbers, 1);
       std::vector<double> begin{0};
-      Traced got = traceBundle(task, ray, begin);
-      for (std::uint32_t rounds = 0; !got.found[0].resolved; got = traceBundle(task, ray, begin)) {
+      std::vector<Traced> got = traceBundle(task, ray, begin);
+      for (std::uint32_t rounds = 0; !got[0].resolved; got = traceBundle(task, ray, begin)) {
         ASSERT_LE(++rounds, cellCount(scene.tree)) << "it goes round in circles";
-        task.check(got.next[0], Segment(ray[0]).ray, begin[0]);
+        task.check(got[0].next, Segment(ray[0]).ray, begin[0]);
         if (numbers.real(0, 1) < 0.2) task.forget();
-        task.fetch(got.next[0].cell);
-        begin[0] = got.next[0].tEnter;
+        task.fetch(got[0].next.cell);
+        begin[0] = got[0].next.tEnter;
         ++fetched;
       }
-      expectSame(got.found[0], traceBundle(scene.whole, ray, {}).found[0]);
-      hits += got.found[0].hit.found();
+      expectSame(got[0], traceBundle(scene.whole, ray, {})[0]);
+      hits += got[0].hit.found();
     }
   }
   EXPECT_GT(fetched, 300u);
@@ -237,14 +243,14 @@ TEST(LocalSpace, HandingRaysOnFindsTheSame) {
     for (int n = 0; n < 25; ++n) {
       SCOPED_TRACE(testing::Message() << "seed " << seed << " ray " << n);
       const std::vector<Ray> ray = randomBundle(numbers, 1);
-      Traced got = traceBundle(tasks[0], ray, {});
-      for (std::uint32_t rounds = 0; !got.found[0].resolved; ++handedOn) {
+      std::vector<Traced> got = traceBundle(tasks[0], ray, {});
+      for (std::uint32_t rounds = 0; !got[0].resolved; ++handedOn) {
         ASSERT_LE(++rounds, voxelCount(scene.tree));
-        const NextBlock next = got.next[0];
+        const NextBlock next = got[0].next;
         const double begin = walkedTo(scene.tree, ray[0].origin, ray[0].direction, next.step);
         got = traceBundle(tasks[static_cast<std::size_t>(next.voxel) % tasks.size()], ray, {begin});
       }
-      expectSame(got.found[0], traceBundle(scene.whole, ray, {}).found[0]);
+      expectSame(got[0], traceBundle(scene.whole, ray, {})[0]);
     }
   }
   EXPECT_GT(handedOn, 300u);
