@@ -62,7 +62,57 @@ std::vector<Column> columns(const TaskSummary& task) {
           {"cellsServed", count(r.cellsServed)}};
 }
 
+double megabytes(std::uint64_t bytes) { return 1e-6 * static_cast<double>(bytes); }
+
 }  // namespace
+
+void writeTable(std::FILE* to, const HostSummary& s, std::uint64_t pictureSum) {
+  std::fprintf(to, "%-21s %-12s %9s %9s %10s %9s %9s %8s %8s %7s %7s %7s %7s %7s %7s\n", "task", "host",
+               "objects", "rays", "visits", "hits", "shaded", "msg in", "msg out", "MB in", "MB out",
+               "busy s", "idle s", "waiting", "peak MB");
+  for (const TaskSummary& task : s.tasks) {
+    const Report& r = task.report;
+    const TraceCounts& c = r.counts;
+    const std::string name =
+        std::string(programName(task.placement.role)).substr(9) + " " + std::to_string(task.placement.index);
+    std::fprintf(to,
+                 "%-21s %-12.12s %9" PRIu64 " %9" PRIu64 " %10" PRIu64 " %9" PRIu64 " %9" PRIu64 " %8" PRIu64
+                 " %8" PRIu64 " %7.1f %7.1f %7.2f %7.2f %7" PRIu64 " %7.1f\n",
+                 name.c_str(), task.placement.host.c_str(), task.objects,
+                 c.primaryRays + c.transmittedRays + c.reflectedRays + c.shadowRays, c.visits, c.hits,
+                 r.combined, r.messagesIn, r.messagesOut, megabytes(r.bytesIn), megabytes(r.bytesOut),
+                 r.busySeconds, r.idleSeconds, r.peakQueue, megabytes(r.peakMemory));
+  }
+  for (const TaskSummary& task : s.tasks) {
+    const Report& r = task.report;
+    if (r.cache.fetched == 0 && r.pyramids == 0) continue;
+    auto percent = [](std::uint64_t part, std::uint64_t whole) {
+      return whole == 0 ? 100.0 : 100.0 * static_cast<double>(part) / static_cast<double>(whole);
+    };
+    std::fprintf(to,
+                 "%s %u: cache %.2f %% hits (shadow rays %.2f %%), %" PRIu64
+                 " cells fetched, %.2f MB, %" PRIu64 " thrown out",
+                 programName(task.placement.role) + 9, task.placement.index,
+                 percent(r.cache.hits, r.cache.lookups), percent(r.shadowCache.hits, r.shadowCache.lookups),
+                 r.cache.fetched, megabytes(r.cache.fetchedBytes), r.cache.evicted);
+    if (r.pyramids > 0)
+      std::fprintf(to, "; %" PRIu64 " pyramids, %" PRIu64 " of %" PRIu64 " rays went on to the voxels",
+                   r.pyramids, r.forwardedRays, r.pyramidRays);
+    std::fprintf(to, "\n");
+  }
+  double cpu = 0;
+  for (const TaskSummary& task : s.tasks) cpu += task.report.cpuSeconds;
+  std::fprintf(to,
+               "host: %.1f MB in, %.1f MB out; at most %" PRIu64
+               " samples on their way; %.3f s start, %.3f s trace; "
+               "tasks' CPU %.3f s\n",
+               megabytes(s.host.report.bytesIn), megabytes(s.host.report.bytesOut), s.peakInFlight,
+               s.startSeconds, s.traceSeconds, cpu);
+  if (s.successions > 0)
+    std::fprintf(to, "%d tasks died and were replaced, %" PRIu64 " samples issued again, %u epochs\n",
+                 s.successions, s.reissued, s.epochs);
+  std::fprintf(to, "picture checksum %016" PRIx64 "\n", pictureSum);
+}
 
 std::string taskTable(const HostSummary& summary, std::uint64_t pictureSum) {
   char sum[20];

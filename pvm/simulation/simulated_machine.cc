@@ -38,6 +38,34 @@ constexpr double kMoveSeconds = 1e-5;
 
 }  // namespace
 
+std::size_t Channels::add(const Channel& channel, LinkEvent event) {
+  Queue& queue = queues_[channel];
+  queue.push_back(std::move(event));
+  peak_ = std::max(peak_, ++size_);
+  return queue.size();
+}
+
+LinkEvent Channels::take(const Channel& channel) {
+  const auto at = queues_.find(channel);
+  LinkEvent event = std::move(at->second.front());
+  at->second.pop_front();
+  --size_;
+  if (at->second.empty()) queues_.erase(at);
+  return event;
+}
+
+void Channels::cut(TaskId task, const std::function<std::size_t(std::size_t)>& keep) {
+  for (auto it = queues_.begin(); it != queues_.end();) {
+    auto& [channel, queue] = *it;
+    std::size_t left = queue.size();
+    if (channel.to == task) left = 0;
+    if (channel.from == task && keep) left = keep(queue.size());
+    size_ -= queue.size() - left;
+    queue.resize(left);
+    it = queue.empty() ? queues_.erase(it) : std::next(it);
+  }
+}
+
 class SimulatedMachine::Inside final : public Link {
  public:
   Inside(SimulatedMachine& machine, TaskId self) : machine_(machine), self_(self) {}
@@ -96,14 +124,12 @@ Spawned SimulatedMachine::spawn(Role role, const std::string& host) {
 
 void SimulatedMachine::sendFrom(TaskId from, TaskId to, std::span<const std::byte> packet) {
   if (to != kHost && !tasks_.contains(to)) return;
-  enqueue({from, to}, {LinkEvent::Kind::packet, from, "", Bytes(packet.begin(), packet.end())});
+  enqueue(from, to, {LinkEvent::Kind::packet, from, "", Bytes(packet.begin(), packet.end())});
 }
 
-void SimulatedMachine::enqueue(const Channel& channel, LinkEvent event) {
-  std::deque<LinkEvent>& queue = channels_[channel];
-  queue.push_back(std::move(event));
-  peakQueue_ = std::max(peakQueue_, ++queued_);
-  if (options_.largestQueue > 0 && queue.size() > options_.largestQueue)
+void SimulatedMachine::enqueue(TaskId from, TaskId to, LinkEvent event) {
+  const std::size_t waiting = channels_.add({from, to}, std::move(event));
+  if (options_.largestQueue > 0 && waiting > options_.largestQueue)
     throw std::runtime_error("simulated machine: a queue grows beyond its bound");
 }
 
@@ -111,17 +137,11 @@ void SimulatedMachine::kill(TaskId task) { bury(task, random(2) == 0); }
 
 void SimulatedMachine::bury(TaskId task, bool losesWords) {
   if (tasks_.erase(task) == 0) return;
-  for (auto it = channels_.begin(); it != channels_.end();) {
-    auto& [channel, queue] = *it;
-    std::size_t keep = queue.size();
-    if (channel.to == task) keep = 0;
-    if (channel.from == task && losesWords) keep = random(queue.size() + 1);
-    queued_ -= queue.size() - keep;
-    queue.resize(keep);
-    it = queue.empty() ? channels_.erase(it) : std::next(it);
-  }
+  std::function<std::size_t(std::size_t)> keep;
+  if (losesWords) keep = [this](std::size_t size) { return static_cast<std::size_t>(random(size + 1)); };
+  channels_.cut(task, keep);
   // The notice comes after the last words that still arrive.
-  for (TaskId watcher : watchers_[task]) enqueue({task, watcher}, {LinkEvent::Kind::taskExit, task, "", {}});
+  for (TaskId watcher : watchers_[task]) enqueue(task, watcher, {LinkEvent::Kind::taskExit, task, "", {}});
   watchers_.erase(task);
 }
 
@@ -140,17 +160,12 @@ void SimulatedMachine::injectFault() {
   }
 }
 
-std::optional<LinkEvent> SimulatedMachine::deliver(const Channel& channel) {
+std::optional<LinkEvent> SimulatedMachine::deliver(const Channels::Channel& channel) {
   if (beforeDelivery) {
-    const LinkEvent& next = channels_[channel].front();
-    beforeDelivery(channel.from, channel.to, next.bytes);
-    if (channels_.find(channel) == channels_.end() || channels_[channel].empty()) return std::nullopt;
+    beforeDelivery(channel.from, channel.to, channels_.queues().at(channel).front().bytes);
+    if (!channels_.queues().contains(channel)) return std::nullopt;
   }
-  std::deque<LinkEvent>& queue = channels_[channel];
-  LinkEvent event = std::move(queue.front());
-  queue.pop_front();
-  --queued_;
-  if (queue.empty()) channels_.erase(channel);
+  LinkEvent event = channels_.take(channel);
   if (channel.to == kHost) return event;
   const auto to = tasks_.find(channel.to);
   if (to == tasks_.end()) return std::nullopt;
@@ -168,8 +183,8 @@ bool SimulatedMachine::move(std::optional<LinkEvent>& forHost) {
   ++moves_;
   time_ += kMoveSeconds;
   injectFault();
-  std::vector<Channel> open;
-  for (const auto& [channel, queue] : channels_) {
+  std::vector<Channels::Channel> open;
+  for (const auto& [channel, queue] : channels_.queues()) {
     const auto to = tasks_.find(channel.to);
     if (channel.to == kHost || (to != tasks_.end() && !to->second->hangs)) open.push_back(channel);
   }
@@ -189,8 +204,8 @@ bool SimulatedMachine::move(std::optional<LinkEvent>& forHost) {
 }
 
 std::optional<LinkEvent> SimulatedMachine::poll() {
-  for (const auto& [channel, queue] : channels_)
-    if (channel.to == kHost && random(2) == 0) return deliver(Channel(channel));
+  for (const auto& [channel, queue] : channels_.queues())
+    if (channel.to == kHost && random(2) == 0) return deliver(Channels::Channel(channel));
   return std::nullopt;
 }
 

@@ -19,6 +19,29 @@
 
 namespace rayshade {
 
+// Packets and notices on their way.
+class Channels {
+ public:
+  struct Channel {
+    TaskId from, to;
+    friend auto operator<=>(const Channel&, const Channel&) = default;
+  };
+  using Queue = std::deque<LinkEvent>;
+
+  const std::map<Channel, Queue>& queues() const { return queues_; }  // none is empty
+  std::size_t peak() const { return peak_; }                          // events waiting, all together
+
+  // How many wait there now.
+  std::size_t add(const Channel& channel, LinkEvent event);
+  LinkEvent take(const Channel& channel);
+  // A task is gone: nothing reaches it, and of what it sent to another the first `keep(size)` arrive; all, if that is empty.
+  void cut(TaskId task, const std::function<std::size_t(std::size_t size)>& keep);
+
+ private:
+  std::map<Channel, Queue> queues_;
+  std::size_t size_ = 0, peak_ = 0;
+};
+
 class SimulatedMachine : public Machine {
  public:
   struct Options {
@@ -52,24 +75,18 @@ class SimulatedMachine : public Machine {
 
   std::uint64_t moves() const { return moves_; }
   int deaths() const { return deaths_; }
-  std::size_t peakQueue() const { return peakQueue_; }  // packets waiting, all pairs together
+  std::size_t peakQueue() const { return channels_.peak(); }  // packets waiting, all pairs together
 
  private:
   static constexpr TaskId kHost{1};
   class Inside;  // the Link of a slave task
   struct Running;
-  struct Channel {
-    TaskId from, to;
-    bool operator<(const Channel& other) const {
-      return from != other.from ? from < other.from : to < other.to;
-    }
-  };
 
   void sendFrom(TaskId from, TaskId to, std::span<const std::byte> packet);
-  void enqueue(const Channel& channel, LinkEvent event);
+  void enqueue(TaskId from, TaskId to, LinkEvent event);
   std::uint64_t random(std::uint64_t below);
   bool move(std::optional<LinkEvent>& forHost);
-  std::optional<LinkEvent> deliver(const Channel& channel);
+  std::optional<LinkEvent> deliver(const Channels::Channel& channel);
   void injectFault();
   void bury(TaskId task, bool losesWords);
 
@@ -81,9 +98,8 @@ class SimulatedMachine : public Machine {
   int idleWaits_ = 0;
   std::int32_t nextTask_ = 2;
   std::map<TaskId, std::unique_ptr<Running>> tasks_;
-  std::map<Channel, std::deque<LinkEvent>> channels_;
+  Channels channels_;
   std::map<TaskId, std::set<TaskId>> watchers_;
-  std::size_t queued_ = 0, peakQueue_ = 0;
 };
 
 }  // namespace rayshade

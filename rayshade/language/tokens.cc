@@ -10,10 +10,7 @@
 namespace rayshade {
 namespace {
 
-constexpr std::size_t kWindow = std::size_t{1} << 18;  // bytes
-constexpr std::size_t kHistory = std::size_t{1}
-                                 << 15;  // bytes kept behind the reading position, for messages
-constexpr std::size_t kShown = 100;      // bytes of a line shown on either side of a caret
+constexpr std::size_t kShown = 100;  // bytes of a line shown on either side of a caret
 
 enum class Class : std::uint8_t { other, space, newline, letter, digit, symbol };
 
@@ -75,106 +72,92 @@ std::string shown(char c) {
 
 }  // namespace
 
-Tokens::Tokens(ReadText read, const std::string& fileName) : read_(std::move(read)), window_(kWindow + 1) {
-  file_ = numberOfFile(fileName);
-  next_ = end_ = window_.data();
+std::uint32_t FileNames::numberOf(std::string_view name) {
+  std::string printable(name);  // it goes into messages: no byte may end or colour them
+  std::replace_if(
+      printable.begin(), printable.end(), [](char c) { return (c >= 0 && c < ' ') || c == 0x7f; }, '?');
+  const auto [at, isNew] = numbers_.try_emplace(printable, static_cast<std::uint32_t>(names_.size()));
+  if (isNew) names_.push_back(printable);
+  return at->second;
 }
 
-bool Tokens::refill() {
-  if (all_) return false;
-  // Drop what lies far enough behind, then fill up.
-  char* const begin = window_.data();
-  const auto read = static_cast<std::size_t>(next_ - begin);
-  const std::size_t drop = read > kHistory ? read - kHistory : 0;
-  const auto held = static_cast<std::size_t>(end_ - begin) - drop;
-  std::memmove(begin, begin + drop, held);
-  windowStart_ += drop;
-  next_ -= drop;
-  const std::size_t got = held < kWindow ? read_(begin + held, kWindow - held) : 0;
-  all_ = got == 0;
-  end_ = begin + held + got;
-  begin[held + got] = '\0';
-  return got > 0;
-}
-
-void Tokens::needAhead(std::size_t count) {
-  while (static_cast<std::size_t>(end_ - next_) < count && refill()) {
-  }
+Tokens::Tokens(ReadText read, const std::string& fileName) : text_(std::move(read)) {
+  file_ = files_.numberOf(fileName);
 }
 
 void Tokens::newLine() {
   ++line_;
-  lineStart_ = offsetOf(next_);
+  lineStart_ = text_.offsetOf(text_.next);
 }
 
 void Tokens::fault(std::string message, const char* at, bool hopeless) {
-  token_ = {Token::Kind::symbol, '\0', {}, 0, 0, placeOf(next_)};  // none: the last one is gone
+  token_ = {Token::Kind::symbol, '\0', {}, 0, 0, placeOf(text_.next)};  // none: the last one is gone
   throw Fault{std::move(message), placeOf(at), hopeless};
 }
 
 void Tokens::advance() {
   while (true) {
-    if (static_cast<std::size_t>(end_ - next_) < kLongestToken + 2) needAhead(kLongestToken + 2);
-    const char c = *next_;
+    if (text_.left() < kLongestToken + 2) text_.needAhead(kLongestToken + 2);
+    const char c = *text_.next;
     switch (classOf(c)) {
       case Class::space:
-        ++next_;
+        ++text_.next;
         continue;
       case Class::newline:
-        ++next_;
+        ++text_.next;
         newLine();
         continue;
       case Class::letter: {
-        const char* const end = endOfName(next_);
-        if (static_cast<std::size_t>(end - next_) > kLongestToken) {
-          const char* const begin = next_;
-          next_ = end;
+        const char* const end = endOfName(text_.next);
+        if (static_cast<std::size_t>(end - text_.next) > kLongestToken) {
+          const char* const begin = text_.next;
+          text_.next = end;
           fault("a word of more than 4096 characters", begin);
         }
-        token_.keyword = findKeyword({next_, static_cast<std::size_t>(end - next_)});
+        token_.keyword = findKeyword({text_.next, static_cast<std::size_t>(end - text_.next)});
         return finish(Token::Kind::word, end);
       }
       case Class::digit:
         return readNumber();
       case Class::symbol:
-        if (c == '/' && next_[1] == '*') {
+        if (c == '/' && text_.next[1] == '*') {
           skipComment();
           continue;
         }
-        if (c == '.' && classOf(next_[1]) == Class::digit) return readNumber();
+        if (c == '.' && classOf(text_.next[1]) == Class::digit) return readNumber();
         token_.symbol = c;
-        return finish(Token::Kind::symbol, next_ + 1);
+        return finish(Token::Kind::symbol, text_.next + 1);
       case Class::other:
-        if (next_ == end_) return finish(Token::Kind::end, next_);
-        if (c == '#' && offsetOf(next_) == lineStart_) {
+        if (text_.next == text_.end()) return finish(Token::Kind::end, text_.next);
+        if (c == '#' && text_.offsetOf(text_.next) == lineStart_) {
           readMarker();
           continue;
         }
-        ++next_;
+        ++text_.next;
         // A byte that no text has: this is a picture, an archive, a program...
-        fault("unexpected " + shown(c), next_ - 1, c < ' ' || c == 0x7f);
+        fault("unexpected " + shown(c), text_.next - 1, c < ' ' || c == 0x7f);
     }
   }
 }
 
 void Tokens::finish(Token::Kind kind, const char* end) {
   token_.kind = kind;
-  token_.place = placeOf(next_);
-  token_.length = static_cast<std::uint32_t>(end - next_);
-  next_ = end;
+  token_.place = placeOf(text_.next);
+  token_.length = static_cast<std::uint32_t>(end - text_.next);
+  text_.next = end;
 }
 
 void Tokens::readNumber() {
-  const char* const begin = next_;
-  const auto [end, error] = std::from_chars(begin, end_, token_.value);
+  const char* const begin = text_.next;
+  const auto [end, error] = std::from_chars(begin, text_.end(), token_.value);
   if (end - begin > static_cast<std::ptrdiff_t>(kLongestToken)) {
-    next_ = end;
+    text_.next = end;
     fault("a number of more than 4096 characters", begin);
   }
   if (error == std::errc::result_out_of_range) {
     // Too small is 0, too large is an error; strtod tells them apart.
     if (std::strtod(std::string(begin, end).c_str(), nullptr) > 1) {
-      next_ = end;
+      text_.next = end;
       fault("the number " + std::string(begin, end) + " is too large", begin);
     }
     token_.value = 0;
@@ -183,16 +166,16 @@ void Tokens::readNumber() {
 }
 
 void Tokens::skipComment() {
-  const TokenPlace begin = placeOf(next_);
-  next_ += 2;
+  const TokenPlace begin = placeOf(text_.next);
+  text_.next += 2;
   while (true) {
-    if (end_ - next_ < 2) needAhead(2);
-    if (next_ == end_) throw Fault{"this comment never ends", begin, true};
-    const char c = *next_++;
+    if (text_.left() < 2) text_.needAhead(2);
+    if (text_.next == text_.end()) throw Fault{"this comment never ends", begin, true};
+    const char c = *text_.next++;
     if (c == '\n') {
       newLine();
-    } else if (c == '*' && *next_ == '/') {
-      ++next_;
+    } else if (c == '*' && *text_.next == '/') {
+      ++text_.next;
       return;
     }
   }
@@ -200,9 +183,9 @@ void Tokens::skipComment() {
 
 // `# 12 "file" flags` or `# line 12 "file"`, up to the end of its line.
 void Tokens::readMarker() {
-  const char* const begin = next_;
-  const char* p = next_ + 1;
-  const char* const end = std::find(p, end_, '\n');
+  const char* const begin = text_.next;
+  const char* p = text_.next + 1;
+  const char* const end = std::find(p, text_.end(), '\n');
   auto skipBlanks = [&] {
     while (p < end && (*p == ' ' || *p == '\t' || *p == '\r')) ++p;
   };
@@ -214,7 +197,7 @@ void Tokens::readMarker() {
   if (error != std::errc{}) {
     const std::string_view directive(begin,
                                      static_cast<std::size_t>(std::min(end - begin, std::ptrdiff_t{30})));
-    next_ = end;
+    text_.next = end;
     fault("unexpected `" + std::string(directive) + "`: preprocessor directives are not read here", begin);
   }
   p = behind;
@@ -222,7 +205,7 @@ void Tokens::readMarker() {
   std::uint32_t file = file_;
   if (p < end && *p == '"') {
     const char* const close = std::find(p + 1, end, '"');
-    file = numberOfFile({p + 1, static_cast<std::size_t>(close - p - 1)});
+    file = files_.numberOf({p + 1, static_cast<std::size_t>(close - p - 1)});
     p = close < end ? close + 1 : end;
     skipBlanks();
     if (p < end && *p == '1' && ++includeDepth_ > kDeepestInclude) {
@@ -235,30 +218,21 @@ void Tokens::readMarker() {
   }
   file_ = file;
   line_ = line;
-  next_ = end;
-  if (next_ < end_) ++next_;
-  lineStart_ = offsetOf(next_);
-}
-
-std::uint32_t Tokens::numberOfFile(std::string_view name) {
-  std::string printable(name);  // it goes into messages: no byte may end or colour them
-  std::replace_if(
-      printable.begin(), printable.end(), [](char c) { return (c >= 0 && c < ' ') || c == 0x7f; }, '?');
-  const auto [at, isNew] = fileNumbers_.try_emplace(printable, static_cast<std::uint32_t>(files_.size()));
-  if (isNew) files_.push_back(printable);
-  return at->second;
+  text_.next = end;
+  if (text_.next < text_.end()) ++text_.next;
+  lineStart_ = text_.offsetOf(text_.next);
 }
 
 bool Tokens::firstInLine() const {
   const TokenPlace& place = token_.place;
-  const std::uint64_t start = std::max(place.lineStart, windowStart_);
-  const std::string_view before = textAt(start, static_cast<std::size_t>(place.offset - start));
+  const std::uint64_t start = std::max(place.lineStart, text_.start());
+  const std::string_view before = text_.text(start, static_cast<std::size_t>(place.offset - start));
   return std::all_of(before.begin(), before.end(), [](char c) { return classOf(c) == Class::space; });
 }
 
 bool Tokens::fileNameFollows() const {
   if (token_.kind == Token::Kind::end) return false;
-  const char* const begin = window_.data() + (token_.place.offset - windowStart_);
+  const char* const begin = text_.at(token_.place.offset);
   const char* const end = endOfFileName(begin);
   if (end == begin) return false;
   // A word alone must not be reserved; with a directory in front it cannot be mistaken.
@@ -266,13 +240,13 @@ bool Tokens::fileNameFollows() const {
 }
 
 std::string Tokens::fileName() {
-  const char* const begin = window_.data() + (token_.place.offset - windowStart_);
+  const char* const begin = text_.at(token_.place.offset);
   if (!fileNameFollows()) throw Fault{"a file name is expected here", token_.place};
   const char* const end = endOfFileName(begin);
   if (static_cast<std::size_t>(end - begin) > kLongestToken)
     throw Fault{"a file name of more than 4096 characters", token_.place};
   std::string name(begin, end);
-  next_ = end;
+  text_.next = end;
   advance();
   return name;
 }
@@ -282,18 +256,18 @@ SourcePlace Tokens::describe(const TokenPlace& place) const {
 }
 
 std::string Tokens::excerpt(const TokenPlace& place) {
-  if (place.offset < std::max(windowStart_, place.lineStart)) return "";
+  if (place.offset < std::max(text_.start(), place.lineStart)) return "";
   // The rest of the line may still be unread.
   const std::uint64_t wanted = place.offset + kShown;
-  if (const std::uint64_t held = offsetOf(end_); wanted > held)
-    needAhead(static_cast<std::size_t>(wanted - offsetOf(next_)));
-  if (place.offset < windowStart_) return "";
+  if (const std::uint64_t held = text_.offsetOf(text_.end()); wanted > held)
+    text_.needAhead(static_cast<std::size_t>(wanted - text_.offsetOf(text_.next)));
+  if (place.offset < text_.start()) return "";
 
   const std::uint64_t firstShown = place.offset > kShown ? place.offset - kShown : 0;
-  const std::uint64_t start = std::max({place.lineStart, firstShown, windowStart_});
-  const std::uint64_t stop = std::min(wanted, offsetOf(end_));
-  const std::string_view before = textAt(start, static_cast<std::size_t>(place.offset - start));
-  std::string_view after = textAt(place.offset, static_cast<std::size_t>(stop - place.offset));
+  const std::uint64_t start = std::max({place.lineStart, firstShown, text_.start()});
+  const std::uint64_t stop = std::min(wanted, text_.offsetOf(text_.end()));
+  const std::string_view before = text_.text(start, static_cast<std::size_t>(place.offset - start));
+  std::string_view after = text_.text(place.offset, static_cast<std::size_t>(stop - place.offset));
   after = after.substr(0, after.find('\n'));
   if (!after.empty() && after.back() == '\r') after.remove_suffix(1);
 

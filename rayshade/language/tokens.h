@@ -1,29 +1,23 @@
 // Tokens of the input language, from a stream of any length.
 //
-// Only a window of the text is held: enough to show the line of a message that is not too old.  A token's
-// text is good until the next token is asked for.  Names are a letter and then letters, digits and . _ -, so
-// `length-1` is one name; a file name may have directories in it and is read by fileName() where the grammar
-// wants one, so that `(a/b)` stays a division (differs from rayshade4, where it is a file name).
+// Only a window of the text is held (text_window.h).  A token's text is good until the next token is asked for.  Names are a
+// letter and then letters, digits and . _ -, so `length-1` is one name; a file name may have directories in it and is read
+// by fileName() where the grammar wants one, so that `(a/b)` stays a division (differs from rayshade4, where it is a file
+// name).
 //
 // A `#` in the first column begins a line marker of the C preprocessor; it sets the file and line of what
 // follows.  Any other `#` line there, a byte that is no text, or a comment without an end is a fault.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cstdint>
-#include <functional>
 #include <map>
 #include <string>
-#include <string_view>
-#include <vector>
 
 #include "rayshade/base/error.h"
 #include "rayshade/language/keywords.h"
+#include "rayshade/language/text_window.h"
 
 namespace rayshade {
-
-// Reads up to `most` bytes; 0 at the end of the text.
-using ReadText = std::function<std::size_t(char* to, std::size_t most)>;
 
 // Where something stands, cheap enough for every token.
 struct TokenPlace {
@@ -50,6 +44,17 @@ struct Fault {
   bool hopeless = false;
 };
 
+// The files that a text names, by number.
+class FileNames {
+ public:
+  std::uint32_t numberOf(std::string_view name);
+  const std::string& operator[](std::uint32_t number) const { return names_[number]; }
+
+ private:
+  std::vector<std::string> names_;
+  std::map<std::string, std::uint32_t> numbers_;
+};
+
 class Tokens {
  public:
   static constexpr std::size_t kLongestToken = 4096;  // bytes
@@ -59,7 +64,7 @@ class Tokens {
   Tokens(ReadText read, const std::string& fileName);
 
   const Token& current() const { return token_; }
-  std::string_view text() const { return textAt(token_.place.offset, token_.length); }
+  std::string_view text() const { return text_.text(token_.place.offset, token_.length); }
   bool firstInLine() const;  // nothing but blanks stands before the current token
   void advance();            // throws Fault; asked again after that, it goes on behind what was wrong
 
@@ -72,35 +77,19 @@ class Tokens {
   std::string excerpt(const TokenPlace& place);
 
  private:
-  std::string_view textAt(std::uint64_t offset, std::size_t length) const {
-    return {window_.data() + (offset - windowStart_), length};
-  }
-  std::uint64_t offsetOf(const char* p) const {
-    return windowStart_ + static_cast<std::uint64_t>(p - window_.data());
-  }
-  TokenPlace placeOf(const char* p) const { return {offsetOf(p), lineStart_, line_, file_}; }
-  bool refill();                      // false when nothing was left to read
-  void needAhead(std::size_t count);  // of unread bytes, or the rest of the text
-  void newLine();                     // behind a newline
+  TokenPlace placeOf(const char* p) const { return {text_.offsetOf(p), lineStart_, line_, file_}; }
+  void newLine();  // behind a newline
   void skipComment();
   void readMarker();
   void readNumber();
   void finish(Token::Kind kind, const char* end);
-  std::uint32_t numberOfFile(std::string_view name);
   [[noreturn]] void fault(std::string message, const char* at, bool hopeless = false);
 
-  ReadText read_;
-  std::vector<char> window_;       // [0, end_) is text, then a NUL that stops every scan
-  std::uint64_t windowStart_ = 0;  // offset of window_[0]
-  const char* next_ = nullptr;     // unread
-  const char* end_ = nullptr;
-  bool all_ = false;  // the text has been read to its end
-
+  TextWindow text_;
   std::uint64_t lineStart_ = 0;
   std::uint32_t line_ = 1, file_ = 0;
   int includeDepth_ = 0;
-  std::vector<std::string> files_;
-  std::map<std::string, std::uint32_t> fileNumbers_;
+  FileNames files_;
   Token token_;
 };
 

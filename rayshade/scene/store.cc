@@ -18,31 +18,67 @@ std::size_t bytesOf(const Vectors& vectors) {
 
 }  // namespace
 
-SceneStore::SceneStore() {
+void StoredSurfaces::add(SurfaceId id, const Surface& surface) {
+  if (!index_.try_emplace(number(id), static_cast<SurfaceIndex>(surfaces_.size())).second) return;
+  surfaces_.push_back(surface);
+  ids_.push_back(id);
+  anyTransparent_ = anyTransparent_ || surface.transparency >= kNegligible;
+}
+
+SurfaceIndex StoredSurfaces::find(SurfaceId id) const {
+  const auto found = index_.find(number(id));
+  return found == index_.end() ? kNone : found->second;
+}
+
+StoredNodes::StoredNodes() {
   nodes_.emplace_back();  // the root
-  nodeIndex_[number(kRootNode)] = 0;
-  members_[number(kWorld)];
+  index_[number(kRootNode)] = 0;
 }
 
-void SceneStore::surface(SurfaceId id, const Surface& surface) {
-  if (surfaceIndex_.try_emplace(number(id), static_cast<SurfaceIndex>(surfaces_.size())).second) {
-    surfaces_.push_back(surface);
-    surfaceIds_.push_back(id);
-    anyTransparent_ = anyTransparent_ || surface.transparency >= kNegligible;
-  }
+std::optional<NodeIndex> StoredNodes::find(NodeId id) const {
+  const auto found = index_.find(number(id));
+  return found == index_.end() ? std::nullopt : std::optional(found->second);
 }
 
-void SceneStore::node(NodeId id, SceneNode node) {
-  if (!nodeIndex_.try_emplace(number(id), static_cast<NodeIndex>(nodes_.size())).second) return;
+std::size_t StoredNodes::add(NodeId id, SceneNode node) {
+  if (!index_.try_emplace(number(id), static_cast<NodeIndex>(nodes_.size())).second) return 0;
   // An aggregate gets its number before its members do: a parent with a larger number would be a circle.
-  if (number(node.parent) >= number(id)) {
-    node.parent = kRootNode;
-    ++leftOut_;
-  }
+  const bool circle = number(node.parent) >= number(id);
+  if (circle) node.parent = kRootNode;
   nodes_.emplace_back();
   nodes_.back().id = id;
   nodes_.back().node = std::move(node);
-  nodes_.back().parent = kNone;  // until prepare()
+  nodes_.back().parent = kNone;  // until place()
+  return circle;
+}
+
+std::size_t StoredNodes::place() {
+  std::size_t mended = 0;
+  for (PlacedNode& node : nodes_)
+    if (node.parent == kNone) mended += place(node);
+  return mended;
+}
+
+// Composes the map of a node from its own and its parent's; parents first.
+std::size_t StoredNodes::place(PlacedNode& node) {
+  std::size_t mended = 0;
+  std::vector<PlacedNode*> pending;
+  for (PlacedNode* f = &node; f->parent == kNone;) {
+    const std::optional<NodeIndex> parent = find(f->node.parent);
+    pending.push_back(f);
+    if (!parent) ++mended;
+    f->parent = parent.value_or(0);
+    f = &nodes_[f->parent];
+  }
+  for (; !pending.empty(); pending.pop_back()) {
+    PlacedNode& f = *pending.back();
+    const PlacedNode& parent = nodes_[f.parent];
+    f.moves = parent.moves || f.node.transforms.moves();
+    if (!f.moves) f.toContainer = then(chainAt(f.node.transforms, {}), parent.toContainer);
+    f.identity = !f.moves && isIdentity(f.toContainer);
+    f.textured = parent.textured || !f.node.textures.empty();
+  }
+  return mended;
 }
 
 void SceneStore::object(SceneObject object) {
@@ -70,49 +106,26 @@ void SceneStore::object(SceneObject object) {
   if (isNew) definitions_.push_back(object.container);
   members->second.push_back(static_cast<ObjectIndex>(objects_.size()));
   objects_.push_back(placed);
-  unplacedFrame_.push_back(object.node);
-  unplacedSurface_.push_back(object.surface);
-}
-
-// Composes the map of a node from its own and its parent's; parents first.
-void SceneStore::place(PlacedNode& node) {
-  std::vector<PlacedNode*> pending;
-  for (PlacedNode* f = &node; f->parent == kNone;) {
-    const auto parent = nodeIndex_.find(number(f->node.parent));
-    pending.push_back(f);
-    if (parent == nodeIndex_.end()) ++leftOut_;
-    f->parent = parent == nodeIndex_.end() ? 0 : parent->second;
-    f = &nodes_[f->parent];
-  }
-  for (; !pending.empty(); pending.pop_back()) {
-    PlacedNode& f = *pending.back();
-    const PlacedNode& parent = nodes_[f.parent];
-    f.moves = parent.moves || f.node.transforms.moves();
-    if (!f.moves) f.toContainer = then(chainAt(f.node.transforms, {}), parent.toContainer);
-    f.identity = !f.moves && isIdentity(f.toContainer);
-    f.textured = parent.textured || !f.node.textures.empty();
-  }
+  unplaced_.push_back({object.node, object.surface});
 }
 
 void SceneStore::prepare() {
-  for (PlacedNode& node : nodes_)
-    if (node.parent == kNone) place(node);
-  for (std::size_t i = placed_; i < objects_.size(); ++i) {
-    PlacedObject& object = objects_[i];
-    const auto node = nodeIndex_.find(number(unplacedFrame_[i - placed_]));
-    if (node == nodeIndex_.end()) ++leftOut_;
-    object.node = node == nodeIndex_.end() ? 0 : node->second;
-    // The innermost surface: the object's own, else that of the nodes around it, inside out.
-    SurfaceId bound = unplacedSurface_[i - placed_];
-    for (NodeIndex f = object.node; bound == kNoSurface && f != 0; f = nodes_[f].parent)
-      bound = nodes_[f].node.surface;
-    const auto surface = surfaceIndex_.find(number(bound));
-    if (bound != kNoSurface && surface == surfaceIndex_.end()) ++leftOut_;
-    object.surface = surface == surfaceIndex_.end() ? kNone : surface->second;
-  }
-  placed_ = objects_.size();
-  std::vector<NodeId>().swap(unplacedFrame_);
-  std::vector<SurfaceId>().swap(unplacedSurface_);
+  leftOut_ += nodes_.place();
+  const std::size_t placed = objects_.size() - unplaced_.size();
+  for (std::size_t i = 0; i < unplaced_.size(); ++i) place(objects_[placed + i], unplaced_[i]);
+  std::vector<Unplaced>().swap(unplaced_);
+}
+
+void SceneStore::place(PlacedObject& object, const Unplaced& where) {
+  const std::optional<NodeIndex> node = nodes_.find(where.node);
+  if (!node) ++leftOut_;
+  object.node = node.value_or(0);
+  // The innermost surface: the object's own, else that of the nodes around it, inside out.
+  SurfaceId bound = where.surface;
+  for (NodeIndex f = object.node; bound == kNoSurface && f != 0; f = nodes_[f].parent)
+    bound = nodes_[f].node.surface;
+  object.surface = surfaces_.find(bound);
+  if (bound != kNoSurface && object.surface == kNone) ++leftOut_;
 }
 
 std::span<const ObjectIndex> SceneStore::objectsOf(DefinitionId definition) const {
@@ -131,8 +144,8 @@ std::vector<DefinitionId> SceneStore::definitions() const {
 }
 
 std::size_t SceneStore::bytes() const {
-  std::size_t total = objects_.capacity() * sizeof(PlacedObject) + nodes_.capacity() * sizeof(PlacedNode) +
-                      surfaces_.capacity() * sizeof(Surface) + bytesOf(shapes_);
+  std::size_t total =
+      objects_.capacity() * sizeof(PlacedObject) + nodes_.bytes() + surfaces_.bytes() + bytesOf(shapes_);
   for (const auto& [id, list] : members_) total += list.capacity() * sizeof(ObjectIndex);
   return total;
 }

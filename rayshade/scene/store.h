@@ -7,6 +7,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <unordered_map>
 #include <vector>
@@ -43,12 +44,50 @@ struct PlacedNode {
   SceneNode node;         // as written
 };
 
+// The surfaces of a scene, by index and by number.
+class StoredSurfaces {
+ public:
+  void add(SurfaceId id, const Surface& surface);  // again: of no effect
+  // kNone: it never came.
+  SurfaceIndex find(SurfaceId id) const;
+
+  const Surface& operator[](SurfaceIndex index) const { return surfaces_[index]; }
+  SurfaceId id(SurfaceIndex index) const { return ids_[index]; }
+  bool anyTransparent() const { return anyTransparent_; }
+  std::size_t bytes() const { return surfaces_.capacity() * sizeof(Surface); }
+
+ private:
+  std::vector<Surface> surfaces_;
+  std::vector<SurfaceId> ids_;
+  std::unordered_map<std::uint32_t, SurfaceIndex> index_;
+  bool anyTransparent_ = false;
+};
+
+// The nodes of a scene, by index and by number; the root is always there.
+class StoredNodes {
+ public:
+  StoredNodes();
+  // How many errors of the sender were mended: a parent that cannot be, or never came.
+  std::size_t add(NodeId id, SceneNode node);
+  std::size_t place();  // those that came in since the last call
+
+  std::optional<NodeIndex> find(NodeId id) const;
+  const PlacedNode& operator[](NodeIndex index) const { return nodes_[index]; }
+  std::size_t bytes() const { return nodes_.capacity() * sizeof(PlacedNode); }
+
+ private:
+  std::size_t place(PlacedNode& node);
+
+  std::vector<PlacedNode> nodes_;
+  std::unordered_map<std::uint32_t, NodeIndex> index_;
+};
+
 class SceneStore : public SceneSink {
  public:
-  SceneStore();
+  SceneStore() { members_[number(kWorld)]; }
 
-  void surface(SurfaceId id, const Surface& surface) override;
-  void node(NodeId id, SceneNode node) override;
+  void surface(SurfaceId id, const Surface& surface) override { surfaces_.add(id, surface); }
+  void node(NodeId id, SceneNode node) override { leftOut_ += nodes_.add(id, std::move(node)); }
   void object(SceneObject object) override;
   void endOfStatement() override {}
 
@@ -66,7 +105,7 @@ class SceneStore : public SceneSink {
   const Surface& surfaceOrDefault(SurfaceIndex index) const {
     return index == kNone ? default_ : surfaces_[index];
   }
-  SurfaceId surfaceId(SurfaceIndex index) const { return index == kNone ? kNoSurface : surfaceIds_[index]; }
+  SurfaceId surfaceId(SurfaceIndex index) const { return index == kNone ? kNoSurface : surfaces_.id(index); }
   std::size_t objectCount() const { return objects_.size(); }
 
   template <class S>
@@ -79,30 +118,28 @@ class SceneStore : public SceneSink {
   const Csg& csg(std::uint32_t body) const { return csgs_[body]; }
 
   // Is any surface of the scene transparent in shadows (before textures, as rayshade has it)?
-  bool anyTransparent() const { return anyTransparent_; }
+  bool anyTransparent() const { return surfaces_.anyTransparent(); }
 
   // Bytes that the scene takes here, shapes and tables.
   std::size_t bytes() const;
 
  private:
-  void place(PlacedNode& node);
+  struct Unplaced {
+    NodeId node;
+    SurfaceId surface;
+  };
+  void place(PlacedObject& object, const Unplaced& where);
 
   std::vector<PlacedObject> objects_;
-  std::vector<PlacedNode> nodes_;
-  std::vector<Surface> surfaces_;
-  std::vector<SurfaceId> surfaceIds_;
+  std::vector<Unplaced> unplaced_;  // of the last objects
+  StoredNodes nodes_;
+  StoredSurfaces surfaces_;
   AllShapes::Vectors shapes_;
   std::vector<Instance> instances_;
   std::vector<Csg> csgs_;
-  std::unordered_map<std::uint32_t, NodeIndex> nodeIndex_;
-  std::unordered_map<std::uint32_t, SurfaceIndex> surfaceIndex_;
   std::unordered_map<std::uint32_t, std::vector<ObjectIndex>> members_;  // of each container
   std::vector<DefinitionId> definitions_;                                // in the order of their first member
-  std::vector<NodeId> unplacedFrame_;                                    // of the objects since `placed_`
-  std::vector<SurfaceId> unplacedSurface_;
-  std::size_t placed_ = 0;
   std::size_t leftOut_ = 0;
-  bool anyTransparent_ = false;
   Surface default_ = defaultSurface();
 };
 

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pvm/program/host_options.h"
+
+#include <CLI/CLI.hpp>
+
+namespace rayshade {
+
+void applySchedule(HostProgramOptions& o, std::uint32_t hosts) {
+  HostOptions& host = o.host;
+  DemandPolicy& policy = host.policy;
+  if (o.schedule == "hybrid") {
+    host.wishes.pyramids = 2 * hosts;
+    policy.shadows = ShadowPolicy::automatic;
+  } else if (o.schedule == "pipelined") {
+    host.wishes.pyramids = 2 * hosts;
+    policy.shadows = ShadowPolicy::automatic;
+    policy.horizon = {Horizon::Kind::cells, 1e9};
+  } else if (o.schedule == "demand") {
+    host.wishes.pyramids = 2 * hosts;
+    policy.horizon = {Horizon::Kind::cells, 1e9};
+    policy.shadows = ShadowPolicy::local;
+    policy.secondariesTravel = false;
+  }
+  host.split = o.split == "cost" ? Split::cost : Split::equal;
+  policy.shadeLocally = o.shading ? *o.shading == "local" : o.schedule != "data";
+  // Every cluster has somebody to work for.
+  if (host.wishes.pyramids > 0) host.wishes.pyramids = std::max(host.wishes.pyramids, host.wishes.clusters);
+  if (o.pyramids) host.wishes.pyramids = *o.pyramids;
+  if (o.shadows) {
+    policy.shadows = *o.shadows == "forward" ? ShadowPolicy::forward
+                     : *o.shadows == "local" ? ShadowPolicy::local
+                                             : ShadowPolicy::automatic;
+  }
+  if (o.cacheMegabytes) policy.cacheBytes = static_cast<std::uint64_t>(*o.cacheMegabytes * 1e6);
+  if (o.horizon && *o.horizon != "auto") {
+    char* end = nullptr;
+    const double value = std::strtod(o.horizon->c_str(), &end);
+    const bool inCells = *end == 'c';
+    if (end == o.horizon->c_str() || end[inCells ? 1 : 0] != '\0' || !(value >= 0))
+      throw HostError("--horizon is auto, a number of cells (12c) or a distance (3.5), not " + *o.horizon);
+    policy.horizon = {inCells ? Horizon::Kind::cells : Horizon::Kind::distance, value};
+  }
+}
+
+void declareHostOptions(CLI::App& app, HostProgramOptions& o) {
+  declareOptions(app, o.render);
+  const std::string tasks = "Tasks";
+  app.add_option("--hosts", o.machine.hostFile, "PVM host file; without: this machine alone")->group(tasks);
+  app.add_flag("--missing-hosts", o.machine.allowMissingHosts, "go on without hosts that do not answer")
+      ->group(tasks);
+  app.add_option("--voxels", o.host.wishes.voxels, "voxel-trace tasks (default: two per host)")
+      ->check(CLI::Range(1, 4096))
+      ->group(tasks);
+  app.add_option("--shades", o.host.wishes.shades, "shade tasks (default: one per four voxel-trace tasks)")
+      ->check(CLI::Range(1, 4096))
+      ->group(tasks);
+  app.add_option("--voxels-per-task", o.host.voxelsPerTask, "voxels that each voxel-trace task holds")
+      ->check(CLI::Range(1, 64))
+      ->group(tasks);
+  app.add_option("--split", o.split, "voxels of equal size, or of equal predicted cost")
+      ->check(CLI::IsMember({"equal", "cost"}))
+      ->group(tasks);
+  app.add_option("--pyramids", o.pyramids, "pyramid-trace tasks (default: by the schedule)")
+      ->check(CLI::Range(0, 4096))
+      ->group(tasks);
+  app.add_option("--clusters", o.host.wishes.clusters,
+                 "copies of the model, each distributed over voxel-trace tasks")
+      ->check(CLI::Range(1, 64))
+      ->group(tasks);
+  const std::string sharing = "What travels: rays or objects";
+  app.add_option("--schedule", o.schedule,
+                 "data: all rays travel; hybrid: primary and shadow rays are traced where they begin, with "
+                 "fetched cells; "
+                 "pipelined: more of that, farther; demand: every ray, nothing travels but objects")
+      ->check(CLI::IsMember({"data", "hybrid", "pipelined", "demand"}))
+      ->group(sharing);
+  app.add_option("--horizon", o.horizon,
+                 "how far pyramids go: auto, a number of cells (12c), a distance (3.5)")
+      ->group(sharing);
+  app.add_option("--shadows", o.shadows, "shadow rays: forward, local or auto")
+      ->check(CLI::IsMember({"forward", "local", "auto"}))
+      ->group(sharing);
+  app.add_option(
+         "--shading", o.shading,
+         "separate: always by shade tasks; local: by the task that found the hit, if nothing of it leaves")
+      ->check(CLI::IsMember({"separate", "local"}))
+      ->group(sharing);
+  app.add_option("--cache", o.cacheMegabytes, "object cache of each task, in MB")
+      ->check(CLI::PositiveNumber)
+      ->group(sharing);
+  app.add_option("--cells", o.host.cells, "cells of the bin-tree, about (default: by the size of the scene)")
+      ->check(CLI::Range(1, 1 << 22))
+      ->group(sharing);
+  app.add_option("--tile", o.host.tileSamples, "samples of a pyramid, at most")
+      ->check(CLI::Range(1, 65536))
+      ->group(sharing);
+  app.add_flag("--dynamic-shading", o.host.dynamicShading, "choose shade tasks by how busy they are")
+      ->group(tasks);
+  app.add_option("--window", o.host.window, "samples on their way at a time")
+      ->check(CLI::Range(1, 1 << 24))
+      ->group(tasks);
+  app.add_option("--patience", o.patience,
+                 "seconds of silence after which a task that renders counts as hanging (default: 30)")
+      ->check(CLI::Range(0.1, 1e6))
+      ->group(tasks);
+  app.add_flag("--plan", o.plan, "render nothing: print which tasks would run where and why")->group(tasks);
+  app.add_option("--table", o.tableFile, "write what each task did to this file, as tab-separated values")
+      ->group(tasks);
+  app.add_flag("--mixed", o.host.mixedArithmetic, "go on when hosts compute different bits")->group(tasks);
+}
+
+}  // namespace rayshade
