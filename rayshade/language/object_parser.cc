@@ -2,6 +2,7 @@
 #include "rayshade/language/object_parser.h"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "rayshade/language/parse_member.h"
@@ -36,9 +37,14 @@ AnyShape flippedWhereWanted(AnyShape shape, bool flip) {
       shape);
 }
 
+// By position in AllShapes.
+constexpr auto kBeginsWithFile = []<class... S>(TypeList<S...>) {
+  return std::array{BeginsWithFile<S>...};
+}(AllShapes{});
+
 // `heightfield [surface] FILE`: a name is a surface only if something follows that can be the file.
-// A height field never takes what `applysurf` has set.
-SurfaceId surfaceOfHeightField(ArgumentReader& in, SceneSink& sink) {
+// A shape of a file never takes what `applysurf` has set.
+SurfaceId surfaceBeforeFile(ArgumentReader& in, SceneSink& sink) {
   if (in.word() == Word::cursurf || isComponent(in.word())) return in.boundSurface(sink).id;
   const TokenPlace place = in.token().place;
   const std::string first = in.fileName();
@@ -150,11 +156,10 @@ void ObjectParser::instance(Scope& scope) {
 void ObjectParser::primitive(Scope& scope) {
   const Token keyword = in_.token();
   const std::string word(tokens_.text());  // short: no memory is taken
-  const bool heightField = word == "heightfield";
   tokens_.advance();
   SurfaceId surface = scope.current.id;
-  if (heightField) {
-    surface = surfaceOfHeightField(in_, sink());
+  if (kBeginsWithFile[keyword.keyword.index]) {
+    surface = surfaceBeforeFile(in_, sink());
   } else if (in_.surfaceFollows()) {
     surface = in_.boundSurface(sink()).id;
   }

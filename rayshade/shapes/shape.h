@@ -25,6 +25,8 @@
 // If it has them:
 //
 //   flipped          the same with its normals turned around, for option -f
+//   beginsWithFile   true: the first argument is the name of a file, which the parser has to tell from that of a
+//                    surface; it never takes what `applysurf` has set
 //   SharesKeywordOf  a shape whose keyword this one has, too: the parser (parseShape) tells them apart
 //
 // SPDX-License-Identifier: BSD-3-Clause
@@ -79,6 +81,11 @@ concept Shape = Serializable<S> &&
   { shape.pointAt(ray, t) } -> std::same_as<ShapePoint>;
   { shape.coordinates(at, at.position) } -> std::same_as<SurfaceCoordinates>;
   S::examples[0];
+};
+
+template <class S>
+concept BeginsWithFile = requires {
+  requires S::beginsWithFile;
 };
 
 }  // namespace rayshade
