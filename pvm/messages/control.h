@@ -26,7 +26,7 @@ struct DemandPolicy {
   ShadowPolicy shadows = ShadowPolicy::forward;
   Horizon horizon;
   bool secondariesTravel = true;        // false: pyramid tasks trace secondary rays too, with what they fetch
-  bool shadeLocally = false;             // what gets all of its colours where it was found is shaded there
+  bool shadeLocally = false;            // what gets all of its colours where it was found is shaded there
   std::uint64_t cacheBytes = 64 << 20;  // of each task
   std::uint32_t outstanding = 64;       // cells asked for at a time
 };
