@@ -25,10 +25,13 @@ inline Float4 splat(float x) { return Float4{x, x, x, x}; }
 // Kinds of processor for which the same work is compiled, each with wider registers than the one before.
 enum class Processor : std::uint8_t { any, avx2, avx512 };
 
-// Functions for x86 processors that not all have.  Only GCC takes what is inlined into them along.
+// Functions for x86 processors that not all have.  Only GCC takes what is inlined into them along, and only into functions
+// for at least the processor that all is compiled for (-march=...): so these name what they add, the levels v3 and v4 of
+// x86-64.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
-#define RAYSHADE_AVX2 __attribute__((target("arch=x86-64-v3")))
-#define RAYSHADE_AVX512 __attribute__((target("arch=x86-64-v4")))
+#define RAYSHADE_AVX2 __attribute__((target("avx2,bmi,bmi2,f16c,fma,lzcnt,movbe")))
+#define RAYSHADE_AVX512 \
+  __attribute__((target("avx2,bmi,bmi2,f16c,fma,lzcnt,movbe,avx512f,avx512bw,avx512cd,avx512dq,avx512vl")))
 inline Processor thisProcessor() {
   return __builtin_cpu_supports("x86-64-v4")   ? Processor::avx512
          : __builtin_cpu_supports("x86-64-v3") ? Processor::avx2
