@@ -13,15 +13,9 @@ namespace rayshade {
 
 class HitShader {
  public:
-  HitShader(TaskContext& context, const EpochSettings& at, TaskSpace& space, Replies& replies,
-            ShadeSender& shades, ShadowBundles& shadows, TraceCounts& counts)
-      : context_(context),
-        at_(at),
-        space_(space),
-        replies_(replies),
-        shades_(shades),
-        shadows_(shadows),
-        counts_(counts) {}
+  HitShader(const EpochSettings& at, TaskSpace& space, Replies& replies, ShadeSender& shades,
+            ShadowBundles& shadows, TraceCounts& counts)
+      : at_(at), space_(space), replies_(replies), shades_(shades), shadows_(shadows), counts_(counts) {}
 
   // At most kBundleSize rays of this task have hit; to[i]: where the colour of hits[i] goes.  queue(ray, reply) takes the
   // transmitted and reflected rays.
@@ -32,7 +26,6 @@ class HitShader {
   void traceLight(std::span<const RayHit> hits);
   std::optional<ReplyTo> finishHit(ShadedHit& at, const ReplyTo& to);
 
-  TaskContext& context_;
   const EpochSettings& at_;
   TaskSpace& space_;
   Replies& replies_;

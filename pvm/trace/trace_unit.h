@@ -21,7 +21,7 @@ struct TraceUnit {
         shades(context, at),
         replies(context, at, shades),
         shadows(context, at, space, cells, counts),
-        shader(context, at, space, replies, shades, shadows, counts) {}
+        shader(at, space, replies, shades, shadows, counts) {}
   TraceUnit(const TraceUnit&) = delete;
 
   // A new epoch of this host: everything that waits is dropped.  `finder`: this task's number among those that find intersections.

@@ -43,8 +43,11 @@ void traceLightPoint(LocalSpace& space, std::span<ShadedHit> shaded, const Scene
                  return shadowRay(*at.ray, at.point, room.samples[room.from[k]]);
                });
   for (std::size_t k = 0; k < count; ++k) room.through[room.from[k]] = room.arriving[k];
-  for (OpenShadow& open : room.open)
-    shaded[room.from[open.index]].pending.push_back({row, std::move(open.shadow), *open.next});
+  for (OpenShadow& open : room.open) {
+    const std::size_t i = room.from[open.index];
+    room.through[i] = kBlack;  // until it has come
+    shaded[i].pending.push_back({row, std::move(open.shadow), *open.next});
+  }
 }
 
 }  // namespace
