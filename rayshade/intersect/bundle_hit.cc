@@ -62,6 +62,7 @@ void nearestHits(const Model& model, const Region& region, std::span<Segment> se
         testers.test(target, asking, [&](std::size_t i, double t) {
           Hit& best = hits[i];
           ++best.tests;
+          if (!(t <= segments[i].tMax)) return;  // most: the objects need not be looked at
           if (!nearer(t, store.object(target.object), segments[i].tMax,
                       best.found() ? &store.object(best.object) : nullptr))
             return;
