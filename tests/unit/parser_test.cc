@@ -359,7 +359,7 @@ TEST(Parser, TakesAGridOfBadSizeAsAList) {
 }
 
 TEST(Parser, RefusesTransformsThatHaveNoInverseTogether) {
-  EXPECT_EQ(errorOf("sphere 1 0 0 0\n  scale 1e-200 1 1 rotate 0 0 1 3 scale 1e-200 1 1"),
+  EXPECT_EQ(errorOf("sphere 1 0 0 0\n  scale 1e17 1 1 rotate 1 2 3 33 scale 1e-17 1 1"),
             "s.ray:2:3: error: these transforms together lose all digits: there is no way back");
   EXPECT_EQ(errorOf("sphere 1 0 0 0 scale 1e-200 1 1 scale 1e200 1 1"), "");
 }
