@@ -49,7 +49,7 @@ PlacedPoint placedPoint(const Model& model, const HitPath& path, const Ray& ray,
     nodes.push_back(node);
     at.toWorld = then(at.toWorld, mapAt(store, node, ray.moment).value_or(Affine{}));
   }
-  at.placed = !isIdentity(at.toWorld);
+  at.placed = !nodes.empty() && !isIdentity(at.toWorld);
   at.position = at.placed ? mapPoint(at.toWorld.forward, at.shape.position) : at.shape.position;
   at.geometricNormal = at.placed ? normalize(mapNormal(at.toWorld.inverse, at.shape.geometricNormal))
                                  : at.shape.geometricNormal;
@@ -66,7 +66,7 @@ bool endsIn(const Model& model, const Ray& ray, const Hit& hit, double end) {
   const PlacedPoint at = placedPoint(model, pathTo(model, ray, hit), ray, hit.t);
   const double behind = (end - hit.t) * std::abs(dot(ray.direction, at.geometricNormal));
   return behind <=
-         2 * at.error + 4 * kRounding * (maxAbs(ray.origin) + maxAbs(ray.origin + end * ray.direction));
+         2 * at.error + 12 * kRounding * (maxAbs(ray.origin) + maxAbs(ray.origin + end * ray.direction));
 }
 
 }  // namespace rayshade

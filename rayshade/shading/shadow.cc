@@ -5,6 +5,13 @@
 
 namespace rayshade {
 
+// `from`: where the direction and the distance were measured.
+void aimAnew(ShadowLine& line, Vec3 from) {
+  const Vec3 way = from + line.distance * line.direction - line.origin;
+  line.direction = normalize(way);
+  line.distance = length(way);
+}
+
 ShadowRay shadowRay(const Ray& ray, const SurfacePoint& at, const LightSample& sample) {
   ShadowRay shadow;
   const ShadowLine line = shadowLine(at, sample);

@@ -26,14 +26,12 @@ struct ShadowLine {
   Vec3 origin, direction;  // unit
   double distance = 0;
 };
+void aimAnew(ShadowLine& line, Vec3 from);
 inline ShadowLine shadowLine(const SurfacePoint& at, const LightSample& sample) {
   ShadowLine line{originOff(at, sample.shadowToward), sample.shadowToward, sample.shadowDistance};
-  // Where the step off the surface is more than the roundings of any coordinate are, the light is aimed at anew.
-  if (at.error > 2 * kRounding * maxAbs(at.position) && line.distance < kInfinity) {
-    const Vec3 way = at.position + line.distance * line.direction - line.origin;
-    line.direction = normalize(way);
-    line.distance = length(way);
-  }
+  // Where the step off the surface is more than the roundings of coordinates are, the light is aimed at anew (see endsIn).
+  if (at.error > 3 * kRounding * line.distance) [[unlikely]]
+    aimAnew(line, at.position);
   return line;
 }
 
