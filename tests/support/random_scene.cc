@@ -196,9 +196,19 @@ class Author : private Random {
   std::string operation(int depth) {
     std::string body = pick({"union", "difference", "intersect"});
     const bool twice = chance(0.1);  // a solid with itself: every face coincides
-    std::string first = depth > 1 && chance(0.3) ? operation(depth - 1) : solid() + transforms();
-    body += "\n  " + first + "\n  " + (twice ? first : solid() + transforms());
+    const std::string first = operand(depth - 1);
+    body += "\n  " + first;
+    for (int others = chance(0.2) ? 3 : 1; others > 0; --others)
+      body += "\n  " + (twice ? first : operand(depth - 1));
     return body + "\nend";
+  }
+  std::string operand(int depth) {
+    if (depth > 0 && chance(0.4)) return operation(depth) + transforms();
+    if (definitions_ > 0 && chance(0.1))
+      return "object d" + std::to_string(below(definitions_)) + transforms();
+    if (chance(0.1))
+      return "list cylinder 1 0 0 -1 0 0 1 disc 1 0 0 1 0 0 1 disc 1 0 0 -1 0 0 -1 end" + transforms();
+    return solid() + transforms();
   }
 
   // ---- where and how
@@ -209,6 +219,7 @@ class Author : private Random {
     if (chance(0.3)) all += " rotate 0 " + number(-1, 1) + " 1 " + (aligned_ ? "90" : number(-180, 180));
     if (chance(0.2)) all += " scale " + pick<std::string>({"1 1 2", "-1 1 1", ".5 .5 .5", "1.5 .7 1"});
     if (chance(0.05)) all += " transform 1 .2 0  0 1 0  .1 0 1";
+    if (chance(0.05)) all += " translate 1e5 0 0 rotate 0 0 1 180 translate 1e5 0 0";  // a hinge far away
     if (moves_ && chance(0.3)) all += " translate (time) 0 (linear(0,0,1,.5))";
     return all;
   }
