@@ -12,6 +12,7 @@
 #include "rayshade/shapes/blob.h"
 #include "rayshade/shapes/height_field.h"
 #include "rayshade/shapes/torus.h"
+#include "tests/support/program.h"
 #include "tests/support/shape_subjects.h"
 
 namespace rayshade {
@@ -356,6 +357,33 @@ TEST_F(HeightFieldFile, ThatPromisesMoreThanItHoldsIsRefused) {
   EXPECT_EQ(failure(), name_ + ": not enough height-field data");
   write(3, 8, 3);
   EXPECT_EQ(failure(), name_ + ": not enough height-field data");
+}
+
+TEST_F(HeightFieldFile, MayHaveTheOtherByteOrder) {
+  const auto here = parsed<HeightField>("tests/support/hills.hf");
+  ASSERT_TRUE(here);
+  std::string bytes = readText("tests/support/hills.hf");
+  for (std::size_t i = 0; i + 3 < bytes.size(); i += 4) {
+    std::swap(bytes[i], bytes[i + 3]);
+    std::swap(bytes[i + 1], bytes[i + 2]);
+  }
+  std::ofstream(name_, std::ios::binary) << bytes;
+  const auto other = parsed<HeightField>(name_);
+  ASSERT_TRUE(other);
+  EXPECT_EQ(encode(*other), encode(*here));
+  std::ofstream(name_, std::ios::binary) << bytes << "more";  // a size that fits neither order exactly
+  EXPECT_EQ(encode(*parsed<HeightField>(name_)), encode(*here));
+  std::ofstream(name_, std::ios::binary) << bytes.substr(0, bytes.size() - 1);
+  EXPECT_EQ(failure(), name_ + ": not enough height-field data");
+}
+
+TEST_F(HeightFieldFile, IsReadInTheOrderThatFitsExactly) {
+  write(0x02000000, 4);  // 2 in the other order
+  EXPECT_EQ(parsed<HeightField>(name_)->heights->size, 2);
+  write(0x00010000, 256 * 256);  // 256 in the other order
+  EXPECT_EQ(parsed<HeightField>(name_)->heights->size, 256);
+  write(2, 4, 7);
+  EXPECT_EQ(parsed<HeightField>(name_)->heights->size, 2);
 }
 
 TEST_F(HeightFieldFile, ThatIsNoFieldIsRefused) {
