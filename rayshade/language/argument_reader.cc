@@ -2,6 +2,9 @@
 #include "rayshade/language/argument_reader.h"
 
 #include <array>
+#include <utility>
+
+#include "rayshade/base/file.h"
 
 namespace rayshade {
 namespace {
@@ -47,11 +50,17 @@ double ArgumentReader::signedNumber() {
   return negative ? -value : value;
 }
 
-std::string ArgumentReader::fileName() {
-  if (!unread_) return tokens_.fileName();
-  std::string name = std::move(*unread_);
-  unread_.reset();
-  return name;
+std::string ArgumentReader::inputFile() {
+  UnreadName name;
+  if (unread_) {
+    name = *std::exchange(unread_, std::nullopt);
+  } else {
+    name.place = token().place;
+    name.text = tokens_.fileName();
+  }
+  auto found = findFile(name.text, tokens_.describe(name.place).file);
+  if (const auto* problem = std::get_if<FileProblem>(&found)) throw Fault{problem->message, name.place};
+  return std::get<std::string>(std::move(found));
 }
 
 bool ArgumentReader::accept(std::string_view word) {

@@ -20,8 +20,8 @@ class Arguments {
   virtual bool numberFollows() = 0;                // is the next token the start of a number?
   virtual bool accept(std::string_view word) = 0;  // takes the next word if it is this keyword
   virtual bool fileNameFollows() = 0;              // is the next token a name that is not a keyword?
-  virtual std::string fileName() = 0;
-  virtual Surface surface() = 0;  // a surface-spec: a name, cursurf, components
+  virtual std::string inputFile() = 0;             // takes the name of a file to be read: where it is found
+  virtual Surface surface() = 0;                   // a surface-spec: a name, cursurf, components
   // Something is odd but the scene goes on (`file:line: warning: ...`).
   virtual void warn(const std::string& message) = 0;
   // The statement is wrong; does not return.

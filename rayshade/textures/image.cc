@@ -93,7 +93,7 @@ bool tiled(double u, double v, double tilesU, double tilesV) {
 
 std::optional<ImageTexture> ImageTexture::parse(Arguments& in) {
   ImageTexture texture;
-  auto read = readImage(in.fileName());
+  auto read = readImage(in.inputFile());
   if (const auto* problem = std::get_if<FileProblem>(&read)) in.fail(problem->message);
   texture.image = std::make_shared<const Image>(std::get<Image>(std::move(read)));
   for (;;) {

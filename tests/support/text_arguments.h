@@ -35,7 +35,7 @@ class TextArguments final : public Arguments {
     return taken;
   }
   bool fileNameFollows() override { return at_ < words_.size() && !numberFollows(); }
-  std::string fileName() override {
+  std::string inputFile() override {
     if (at_ == words_.size()) fail("a file name is missing");
     namesFile_ = true;
     return words_[at_++];
