@@ -8,7 +8,8 @@ namespace {
 
 // Could light from this side change the colour?
 bool answers(const Surface& surface, double cosine) {
-  if (cosine > 0) return anyAbove(surface.diffuse, 0) || anyAbove(surface.specular, 0);
+  if (cosine > 0)
+    return surface.diffuse != kBlack || surface.specular != kBlack;  // textures may take light away
   return surface.translucency >= kNegligible;
 }
 

@@ -87,8 +87,15 @@ TEST(Sky, IsTransparentByWhatItLacksInCloud) {
   EXPECT_NEAR(hit.surface.ambient.b, 0.20963797200747433, kClose);
 }
 
-TEST(Sky, IsFiniteForEqualThresholdsAndNegativeExponents) {
-  for (const char* text : {"0 0.5 2 4 0.5 0.5", "-3 0.5 2 4 0.8 0.7", "1 -0.5 2 4 0.8 0.3"}) {
+TEST(Sky, IsBrightForAnExponentBelowZero) {
+  const TextureHit hit = applied<Sky>("-1 0.5 2 4 0.8 0.3", hitAt(kPlace));
+  EXPECT_NEAR(hit.surface.ambient.b, 1 / 0.45786239418353014, kClose);
+  EXPECT_NEAR(hit.surface.transparency, 1 - 1 / 0.45786239418353014, kClose);
+  EXPECT_EQ(applied<Sky>("-3 0.5 2 4 0.8 0.7", hitAt(kPlace)).surface.ambient.b, 1e6);  // 0 ^ -3
+}
+
+TEST(Sky, IsFiniteForEqualThresholds) {
+  for (const char* text : {"0 0.5 2 4 0.5 0.5", "1 -0.5 2 4 0.8 0.3"}) {
     const double transparency = applied<Sky>(text, hitAt(kPlace)).surface.transparency;
     EXPECT_TRUE(transparency >= 0 && transparency <= 1) << text;
   }
