@@ -28,7 +28,15 @@ bool ArgumentReader::numberFollows() {
          symbolFollows('(');
 }
 
-double ArgumentReader::number() {
+double ArgumentReader::take(const Range& range, bool whole) {
+  const TokenPlace place = token().place;
+  double value = unchecked();
+  if (whole) value = std::trunc(value);
+  if (!range.holds(value)) throw Fault{outOfRange(value, range, whole), place};
+  return value;
+}
+
+double ArgumentReader::unchecked() {
   if (!symbolFollows('(')) return signedNumber();
   const TokenPlace place = token().place;
   const Expression value = expression();
@@ -132,7 +140,7 @@ Surface ArgumentReader::components(Surface s) {
         s.diffuse = color();
         break;
       case Word::extinct:
-        s.extinct = number();
+        s.extinct = number(kShare);
         break;
       case Word::index:
         s.index = number();
@@ -141,21 +149,21 @@ Surface ArgumentReader::components(Surface s) {
         s.noShadow = true;
         break;
       case Word::reflect:
-        s.reflect = number();
+        s.reflect = number(kFactor);
         break;
       case Word::specpow:
-        s.specularPower = number();
+        s.specularPower = number(kExponent);
         break;
       case Word::specular:
         s.specular = color();
         break;
       case Word::translucency:
-        s.translucency = number();
+        s.translucency = number(kFactor);
         s.translucent = color();
-        s.translucentPower = number();
+        s.translucentPower = number(kExponent);
         break;
       default:
-        s.transparency = number();
+        s.transparency = number(kFactor);
         break;
     }
   }

@@ -31,7 +31,6 @@ class ArgumentReader final : public Arguments {
       : tokens_(tokens), surfaces_(surfaces), warn_(std::move(warn)) {}
 
   // Arguments
-  double number() override;
   bool numberFollows() override;
   bool accept(std::string_view word) override;
   bool fileNameFollows() override { return unread_.has_value() || tokens_.fileNameFollows(); }
@@ -61,6 +60,8 @@ class ArgumentReader final : public Arguments {
   Variables variables;
 
  private:
+  double take(const Range& range, bool whole) override;
+  double unchecked();  // a number
   bool symbolFollows(char symbol) const;
   double signedNumber();
   Surface components(Surface base);  // any number of components, changing a surface

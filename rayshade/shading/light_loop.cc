@@ -64,7 +64,7 @@ Color addLight(Color sum, const Surface& surface, const Facing& facing, Vec3 tow
   const double lobe = phongLobe(-along, surface.translucentPower);
   if (lobe > 0) sum = sum + lobe * (surface.body * light);
   // Everything summed so far is scaled, ambient and earlier lights included: what rayshade does.
-  return surface.translucency * sum;
+  return limited(surface.translucency * sum);
 }
 
 }  // namespace rayshade

@@ -102,8 +102,8 @@ std::optional<ImageTexture> ImageTexture::parse(Arguments& in) {
       if (!component) in.fail("a picture has no such component");
       texture.component = *component;
     } else if (in.accept("range")) {
-      texture.high = in.number();
-      texture.low = in.number();
+      texture.high = in.number(kFactor);
+      texture.low = in.number(kFactor);
     } else if (in.accept("smooth")) {
       texture.smooth = true;
     } else if (in.accept("textsurf")) {

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <charconv>
+#include <cmath>
 #include <optional>
 #include <sstream>
 #include <stdexcept>
@@ -22,12 +23,6 @@ class TextArguments final : public Arguments {
     for (std::string word; in >> word;) words_.push_back(word);
   }
 
-  double number() override {
-    const std::optional<double> value = at_ < words_.size() ? numberIn(words_[at_]) : std::nullopt;
-    if (!value) fail("a number is missing");
-    ++at_;
-    return *value;
-  }
   bool numberFollows() override { return at_ < words_.size() && numberIn(words_[at_]).has_value(); }
   bool accept(std::string_view word) override {
     const bool taken = at_ < words_.size() && words_[at_] == word;
@@ -49,6 +44,15 @@ class TextArguments final : public Arguments {
   const std::vector<std::string>& warnings() const { return warnings_; }
 
  private:
+  double take(const Range& range, bool whole) override {
+    std::optional<double> value = at_ < words_.size() ? numberIn(words_[at_]) : std::nullopt;
+    if (!value) fail("a number is missing");
+    ++at_;
+    if (whole) value = std::trunc(*value);
+    if (!range.holds(*value)) fail(outOfRange(*value, range, whole));
+    return *value;
+  }
+
   static std::optional<double> numberIn(const std::string& word) {
     double value = 0;
     const char* const end = word.data() + word.size();
