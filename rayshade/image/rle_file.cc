@@ -3,6 +3,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rayshade/image/rle_file.h"
 
+#include <algorithm>
+
 namespace rayshade {
 namespace {
 
@@ -62,6 +64,7 @@ class RleReader {
     raster_.channels = static_cast<std::int32_t>(colors_) + ((flags & kAlpha) != 0 ? 1 : 0);
     const std::size_t count = countLevels(raster_, kMostUnset + kMostPerByte * left_.size(), name_);
     raster_.levels.resize(count);
+    unset_ = count;
     if ((flags & kClearFirst) == 0) return;
     for (std::size_t i = 0; i < count; ++i) {
       const std::size_t channel = i % static_cast<std::size_t>(raster_.channels);
@@ -85,13 +88,14 @@ class RleReader {
         x_ += argument;
         return true;
       case Opcode::byteData: {
-        const std::string_view data = take(argument + 1 + (argument + 1) % 2);
-        for (unsigned i = 0; i <= argument; ++i) put(static_cast<unsigned char>(data[i]));
+        const std::size_t count = argument + std::size_t{1};
+        const std::string_view data = take(count + count % 2);
+        put(count, [&](std::size_t i) { return data[i]; });
         return true;
       }
       case Opcode::runData: {
-        const auto level = static_cast<std::uint16_t>(word() & 0xff);
-        for (unsigned i = 0; i <= argument; ++i) put(level);
+        const auto level = static_cast<char>(word() & 0xff);
+        put(argument + std::size_t{1}, [&](std::size_t) { return level; });
         return true;
       }
       case Opcode::end:
@@ -100,14 +104,21 @@ class RleReader {
     failOn(name_, "damaged RLE: an unknown instruction " + std::to_string(code));
   }
 
-  // The next pixel of the channel; what is outside of the picture goes nowhere.
-  void put(std::uint16_t level) {
-    const std::size_t x = x_++;
+  // The next pixels of the channel; what is outside of the picture goes nowhere.
+  template <class LevelAt>
+  void put(std::size_t count, const LevelAt& levelAt) {
     const auto width = static_cast<std::size_t>(raster_.width),
                height = static_cast<std::size_t>(raster_.height);
     const auto channels = static_cast<std::size_t>(raster_.channels);
-    if (x >= width || row_ >= height || channel_ >= channels) return;
-    raster_.levels[((height - 1 - row_) * width + x) * channels + channel_] = level;
+    const std::size_t first = x_, end = std::min(first + count, width);
+    x_ += count;
+    if (first >= end || row_ >= height || channel_ >= channels) return;
+    // Else a short file could keep us busy for hours.
+    if (end - first > unset_) failOn(name_, "damaged RLE: sets pixels again and again");
+    unset_ -= end - first;
+    std::uint16_t* const row = &raster_.levels[(height - 1 - row_) * width * channels];
+    for (std::size_t x = first; x < end; ++x)
+      row[x * channels + channel_] = static_cast<unsigned char>(levelAt(x - first));
   }
 
   static constexpr unsigned kNoChannel = 256;
@@ -118,6 +129,7 @@ class RleReader {
   unsigned colors_ = 0;
   std::size_t row_ = 0, x_ = 0;  // from the lower left
   unsigned channel_ = 0;
+  std::size_t unset_ = 0;  // levels
 };
 
 }  // namespace

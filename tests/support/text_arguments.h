@@ -1,6 +1,7 @@
 // Arguments over a string: words and numbers apart by blanks, no expressions.
 //
-// fail() throws std::runtime_error; warnings are kept; surface() gives the default surface without reading.
+// inf and nan are numbers, which the language has none of; fail() throws std::runtime_error; warnings are kept; surface()
+// gives the default surface without reading.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -49,7 +50,7 @@ class TextArguments final : public Arguments {
     if (!value) fail("a number is missing");
     ++at_;
     if (whole) value = std::trunc(*value);
-    if (!range.holds(*value)) fail(outOfRange(*value, range, whole));
+    if (std::isfinite(*value) && !range.holds(*value)) fail(outOfRange(*value, range, whole));
     return *value;
   }
 

@@ -146,6 +146,13 @@ TEST(RleRaster, TakesNothingOutsideOfThePicture) {
   EXPECT_EQ(readRaster(rleOf(2, 1, kNoBackground, 1, rows), "p").levels, (Levels{'r', 'r'}));
 }
 
+TEST(RleRaster, ThatSetsItsPixelsAgainAndAgainIsRefused) {
+  const std::string once("\2\0\6\1x\0", 6), begin(1, '\0');
+  EXPECT_EQ(problemOf(rleOf(2, 1, kNoBackground, 1, begin + once + kEnd)), "");
+  EXPECT_EQ(problemOf(rleOf(2, 1, kNoBackground, 1, begin + once + once + kEnd)),
+            "p: damaged RLE: sets pixels again and again");
+}
+
 TEST(RleRaster, ThatIsNoSuchPictureIsRefused) {
   EXPECT_NE(problemOf(rleOf(2, 1, kNoBackground, 2, "\0" + kEnd)), "");
   EXPECT_NE(problemOf(rleOf(0, 1, kNoBackground, 1, "\0" + kEnd)), "");
