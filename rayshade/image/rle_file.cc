@@ -16,7 +16,7 @@ constexpr unsigned kLong = 0x40;  // in an opcode: the argument has 16 bits
 constexpr unsigned kAlphaColor = 255;
 
 // Pixels that are not set take no bytes: so many are believed of any file.  Six bytes may be a run of 65536.
-constexpr std::size_t kMostUnset = std::size_t{1} << 24;
+constexpr std::size_t kMostUnset = std::size_t{1} << 22;
 constexpr std::size_t kMostPerByte = 65536 / 6 + 1;
 
 class RleReader {
