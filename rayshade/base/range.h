@@ -24,7 +24,7 @@ inline constexpr Range kAnyWholeNumber{-2147483648.0, 2147483647.0};
 inline constexpr Range kNotNegative{0};
 inline constexpr Range kPositive{0, kAnyNumber.most, true};
 inline constexpr Range kPositiveWholeNumber{1, kAnyWholeNumber.most};
-inline constexpr Range kFactor{-1e6, 1e6};  // colours, and what they are multiplied by
+inline constexpr Range kFactor{-1e30, 1e30};  // colours, and what they are multiplied by
 inline constexpr Range kShare{0, 1};
 inline constexpr Range kExponent{-1e9, 1e9};        // of a highlight
 inline constexpr Range kFieldOfView{0, 180, true};  // degrees
@@ -32,6 +32,7 @@ inline constexpr Range kFieldOfView{0, 180, true};  // degrees
 // "from 0 to 1"
 inline std::string describe(const Range& range) {
   std::ostringstream text;
+  text.precision(10);
   if (range.open && std::isinf(range.most))
     text << "above " << range.least;
   else if (std::isinf(range.most))

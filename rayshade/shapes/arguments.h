@@ -48,6 +48,7 @@ class Arguments {
 // What is to be said of a number out of its range.
 inline std::string outOfRange(double value, const Range& range, bool whole) {
   std::ostringstream text;
+  text.precision(10);
   text << (whole ? "a whole number " : "a number ") << describe(range) << " is expected here, not " << value;
   return text.str();
 }

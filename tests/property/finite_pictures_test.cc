@@ -244,16 +244,16 @@ TEST(FinitePictures, ForAnyNumberOfAShapeTextureLightOrEffect) {
 TEST(FinitePictures, WhereEveryStepGivesMoreThanItGot) {
   std::string between =
       kView + "maxdepth 300 sample 1 " + kLights +
-      "surface s ambient 1 1 1 diffuse 1 0 1 specular 1e6 0 1e6 reflect 1e6 transp 1e6 body 1e6 0 1 "
-      "translu 1e6 1 1 0 1e9 plane s 0 2 0 0 1 0 plane s 0 -5 0 0 1 0 ";
+      "surface s ambient 1 1 1 diffuse 1 0 1 specular 1e30 0 1e30 reflect 1e30 transp 1e30 body 1e30 0 1 "
+      "translu 1e30 1 1 0 1e9 plane s 0 2 0 0 1 0 plane s 0 -5 0 0 1 0 ";
   std::string textured = kView + kLights + kSurface + "sphere s 1 0 0 0 ";
   std::string windows = kView + kLights + "plane diffuse 1 0 1 0 0 -1 0 0 1 ";
   for (int i = 0; i < 70; ++i) {
-    between += "light 1e6 0 1 point 0 9 0 ";
+    between += "light 1e30 0 1 point 0 9 0 ";
     textured +=
-        "texture fbm 1e6 1e6 .5 2 5 0 texture fbmbump 1e6 1e6 .5 2 5 "
-        "texture image docs/examples/letter.png component body range 1e6 1e6 ";
-    windows += "disc transp 1e6 body 1 0 1 9 0 0 " + std::to_string(i) + " 0 0 1 ";
+        "texture fbm 1e30 1e30 .5 2 5 0 texture fbmbump 1e30 1e30 .5 2 5 "
+        "texture image docs/examples/letter.png component body range 1e30 1e30 ";
+    windows += "disc transp 1e30 body 1 0 1 9 0 0 " + std::to_string(i) + " 0 0 1 ";
   }
   for (const std::string& text : {between, textured, windows}) {
     std::string error;

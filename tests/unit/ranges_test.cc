@@ -30,8 +30,8 @@ TEST(Ranges, ArePlacedAtTheNumber) {
   EXPECT_EQ(errorOf("sample 9"), "s.ray:1:8: error: a whole number from 1 to 8 is expected here, not 9");
   EXPECT_EQ(errorOf("fov 40 (90 * 2)"),
             "s.ray:1:8: error: a number between 0 and 180 is expected here, not 180");
-  EXPECT_EQ(errorOf("light 1 1e7 1 point 0 0 0"),
-            "s.ray:1:9: error: a number from -1e+06 to 1e+06 is expected here, not 1e+07");
+  EXPECT_EQ(errorOf("light 1 1e31 1 point 0 0 0"),
+            "s.ray:1:9: error: a number from -1e+30 to 1e+30 is expected here, not 1e+31");
   EXPECT_EQ(errorOf("atmosphere 0"), "s.ray:1:12: error: a number above 0 is expected here, not 0");
 }
 
