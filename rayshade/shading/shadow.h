@@ -21,6 +21,20 @@ struct ShadowRay {
   bool inside = false;
 };
 
+// From a hit to a point of a light: off the surface.
+struct ShadowLine {
+  Vec3 origin, direction;  // unit
+  double distance = 0;
+};
+void aimAnew(ShadowLine& line, Vec3 from);
+inline ShadowLine shadowLine(const SurfacePoint& at, const LightSample& sample) {
+  ShadowLine line{originOff(at, sample.shadowToward), sample.shadowToward, sample.shadowDistance};
+  // Where the step off the surface is more than the roundings of coordinates are, the light is aimed at anew (see endsIn).
+  if (at.error > 3 * kRounding * line.distance) [[unlikely]]
+    aimAnew(line, at.position);
+  return line;
+}
+
 // The shadow ray of a hit to a point of a light that is seen as `sample` from there.
 ShadowRay shadowRay(const Ray& ray, const SurfacePoint& at, const LightSample& sample);
 
