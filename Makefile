@@ -43,7 +43,7 @@ FLAGS := -std=c++20 $(or $(OPTIMIZE),-O2) -g1 -Wall -Wextra -Werror -Wno-psabi -
 # What runs for long is worth a tenth more.  -Wno-restrict: g++ 12 then sees overlaps in std::string that are not there (its
 # bug 105651).
 long_running := $(if $(OPTIMIZE)$(SAN),,-O3 -Wno-restrict)
-LIBRARIES := -lpng
+LIBRARIES := -lpng -ljpeg
 # One tree serves tests and fuzzers; it is the one that clang compiles, too.  What is left out crashes anyway (null),
 # does no harm here (alignment) or finds little; together they are a third of the time to compile.
 sanitized := SAN=address,undefined OPTIMIZE=$(or $(OPTIMIZE),-O1) CXX="$(CLANG)" \

@@ -75,6 +75,7 @@ void HostTask::renderFrame(const View& view, const PictureSpec& picture, std::in
     if (progress) progress(completed);
     takeEvents(1);
   }
+  summary_.notFinite += sampler.counts().notFinite;
   issuing_.endFrame();
   summary_.traceSeconds += machine_.now() - begin;
 }

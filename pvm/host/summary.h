@@ -24,6 +24,7 @@ struct HostSummary {
   std::uint32_t epochs = 0;
   std::uint64_t peakInFlight = 0;
   std::uint64_t reissued = 0;                                    // samples issued again
+  std::uint64_t notFinite = 0;                                   // colours of samples
   double surveySeconds = 0, startSeconds = 0, traceSeconds = 0;  // start: shipping and building
 };
 

@@ -122,6 +122,7 @@ int run(HostProgramOptions& options) {
     sum.pixels.clear();
     if (frame == first + head.picture.frames - 1) {
       const HostSummary summary = host.finish();
+      if (!quiet) warnOfNotFinite(summary.notFinite);
       if (report) {
         writeTable(report.file(), summary, pictureSum);
       } else if (!quiet || options.render.verbose) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 
 #include "rayshade/base/archive.h"
 
@@ -25,6 +26,14 @@ constexpr Color operator*(double s, Color a) { return a * s; }
 
 constexpr bool anyAbove(Color c, double limit) { return c.r > limit || c.g > limit || c.b > limit; }
 constexpr bool anyAbove(Color c, Color limit) { return c.r > limit.r || c.g > limit.g || c.b > limit.b; }
+// Light that is more than anything in a picture can be, and still far from infinite in single precision.
+inline constexpr double kMostLight = 1e30;
+constexpr Color limited(Color c) {
+  return {std::clamp(c.r, -kMostLight, kMostLight), std::clamp(c.g, -kMostLight, kMostLight),
+          std::clamp(c.b, -kMostLight, kMostLight)};
+}
+
+inline bool isFinite(Color c) { return std::isfinite(c.r) && std::isfinite(c.g) && std::isfinite(c.b); }
 constexpr double largest(Color c) { return std::max({c.r, c.g, c.b}); }
 
 template <class Archive>

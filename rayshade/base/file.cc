@@ -6,8 +6,24 @@
 #include <filesystem>
 #include <fstream>
 #include <system_error>
+#include <vector>
 
 namespace rayshade {
+
+std::variant<std::string, FileProblem> findFile(const std::string& name, const std::string& namedIn) {
+  namespace fs = std::filesystem;
+  std::error_code ignored;
+  const fs::path beside = fs::path(namedIn).parent_path().lexically_normal();
+  std::vector<std::string> places = {name};
+  const bool elsewhere = !beside.empty() && beside != "." && fs::path(name).is_relative();
+  if (elsewhere) places.push_back((beside / name).string());
+  for (const std::string& place : places)
+    if (fs::is_regular_file(place, ignored)) return place;
+  for (const std::string& place : places)
+    if (fs::exists(place, ignored)) return place;  // what is wrong with it, the reader says
+  if (!elsewhere) return FileProblem{name + ": no such file"};
+  return FileProblem{name + ": no such file, neither where the program runs nor in " + beside.string()};
+}
 
 std::variant<Bytes, FileProblem> readFile(const std::string& name, std::size_t most) {
   auto problem = [&name](const std::string& what) { return FileProblem{name + ": " + what}; };

@@ -1,7 +1,6 @@
 // Pixels of 8 bits a channel, for textures.
 //
-// Row 0 is where v is 0: the first row of a generic file, the lowest row of a PNG.  A channel byte b stands
-// for b / 255; there is no gamma.
+// Row 0 is where v is 0: the lowest row of a picture.  A channel byte b stands for b / 255; there is no gamma.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 

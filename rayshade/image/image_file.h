@@ -1,12 +1,8 @@
-// Reads pictures for textures.
+// Reads pictures for textures, of every format of raster_file.h.
 //
-//   generic   a line `width height`, then width * height times the bytes R G B, the row of v = 0 first
-//   PNG       gray, RGB or palette, with or without alpha, 1 to 16 bits (16 are rounded to 8), interlaced
-//             or not, turned over so that a picture stands upright where v goes up
+// They have 8 bits and stand upright where v goes up; the first row of generic files has v = 0.
 //
-// What a file says of its size is compared with the bytes that are there before memory is taken.
-//
-// differs from rayshade4: PNG in place of Utah RLE; as there, the lowest row has v = 0.
+// differs from rayshade4: that reads generic files, or, as it was built, Utah RLE.
 //
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once

@@ -6,9 +6,6 @@
 #include <bit>
 #include <charconv>
 #include <cstring>
-#include <optional>
-
-#include "rayshade/image/picture_format.h"
 
 namespace rayshade {
 namespace {
@@ -21,7 +18,7 @@ class Cursor {
   std::string_view word() {  // netpbm: words between blanks and comments
     for (;;) {
       const std::size_t begin = left_.find_first_not_of(kBlanks);
-      if (begin == left_.npos) failOn(name_, "ends in its header");
+      if (begin == left_.npos) failOn(name_, "ends too early");
       left_.remove_prefix(begin);
       if (left_[0] != '#') break;
       left_.remove_prefix(std::min(left_.find('\n'), left_.size()));
@@ -31,12 +28,12 @@ class Cursor {
     left_.remove_prefix(end);
     return result;
   }
-  std::int32_t number(std::int32_t most) {
+  std::int32_t number(std::int32_t least, std::int32_t most) {
     const std::string_view text = word();
     std::int32_t value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc{} || end != text.data() + text.size() || value < 1 || value > most)
-      failOn(name_, "bad number in its header");
+    if (error != std::errc{} || end != text.data() + text.size() || value < least || value > most)
+      failOn(name_, "a bad number: " + std::string(text.substr(0, 20)));
     return value;
   }
   std::string_view afterBlank() const {  // one blank ends the header
@@ -49,41 +46,50 @@ class Cursor {
   const std::string& name_;
 };
 
-Picture readLevels(Cursor header, std::optional<std::uint32_t> most, const std::string& name) {
-  Picture picture;
-  picture.width = header.number(kLongestSide);
-  picture.height = header.number(kLongestSide);
-  if (!most) most = static_cast<std::uint32_t>(header.number(65535));
-  const std::string_view bytes = header.afterBlank();
-  const std::size_t size = *most > 255 ? 2 : 1;
-  const std::size_t count = countValues(picture, size, bytes.size(), name);
-  picture.pixels.reserve(count);
+// The levels behind a header, `size` bytes each with the high one first.
+void readBytes(Raster& raster, std::string_view bytes, const std::string& name) {
+  const std::size_t size = raster.most > 255 ? 2 : 1;
+  const std::size_t count = countLevels(raster, bytes.size() / size, name);
+  raster.levels.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
     std::uint32_t level = 0;
     for (char byte : bytes.substr(i * size, size)) level = level << 8 | static_cast<std::uint8_t>(byte);
-    picture.pixels.push_back(lightOf(std::min(level, *most), *most));
+    raster.levels.push_back(static_cast<std::uint16_t>(std::min(level, raster.most)));
   }
-  return picture;
+}
+
+void readWords(Raster& raster, Cursor& cursor, const std::string& name) {
+  const std::size_t count = countLevels(raster, cursor.afterBlank().size(), name);
+  raster.levels.reserve(count);
+  for (std::size_t i = 0; i < count; ++i)
+    raster.levels.push_back(
+        static_cast<std::uint16_t>(cursor.number(0, static_cast<std::int32_t>(raster.most))));
 }
 
 }  // namespace
 
-Picture readPpm(std::string_view content, const std::string& name) {
-  Cursor header(content, name);
-  header.word();  // P6
-  return readLevels(header, std::nullopt, name);
-}
-
-Picture readGeneric(std::string_view content, const std::string& name) {
-  return readLevels(Cursor(content, name), 255, name);
+Raster readNetpbm(std::string_view content, const std::string& name) {
+  Cursor cursor(content, name);
+  const std::string_view kind = cursor.word();
+  if (kind.size() != 2) failOn(name, "no blank behind " + std::string(kind.substr(0, 2)));
+  Raster raster;
+  raster.channels = kind[1] == '2' || kind[1] == '5' ? 1 : 3;
+  raster.width = cursor.number(1, kLongestSide);
+  raster.height = cursor.number(1, kLongestSide);
+  raster.most = static_cast<std::uint32_t>(cursor.number(1, 65535));
+  if (kind[1] == '2' || kind[1] == '3')
+    readWords(raster, cursor, name);
+  else
+    readBytes(raster, cursor.afterBlank(), name);
+  return raster;
 }
 
 Picture readPfm(std::string_view content, const std::string& name) {
   Cursor header(content, name);
   header.word();  // PF
   Picture picture;
-  picture.width = header.number(kLongestSide);
-  picture.height = header.number(kLongestSide);
+  picture.width = header.number(1, kLongestSide);
+  picture.height = header.number(1, kLongestSide);
   const bool bigEndian = !header.word().starts_with('-');
   const std::string_view bytes = header.afterBlank();
   picture.pixels.resize(countValues(picture, sizeof(float), bytes.size(), name));

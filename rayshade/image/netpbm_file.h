@@ -1,18 +1,17 @@
-// Files with a header in letters and pixels in bytes: PPM (P6), PFM, and rayshade's generic format.
-// Sources: netpbm, ppm(5); Debevec, Portable Float Map, 2001; generic is a `width height` line with RGB bytes after it (mtv).
+// Files with a header in words: PPM and PGM (P2, P3, P5, P6), and PFM.
+// Sources: netpbm, ppm(5), pgm(5); Debevec, Portable Float Map, 2001.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <string>
 #include <string_view>
 
 #include "rayshade/image/picture.h"
+#include "rayshade/image/raster.h"
 
 namespace rayshade {
 
 // `name`: of the file, for messages.
-Picture readPpm(std::string_view content, const std::string& name);
+Raster readNetpbm(std::string_view content, const std::string& name);
 Picture readPfm(std::string_view content, const std::string& name);
-Picture readGeneric(std::string_view content, const std::string& name);
 
 }  // namespace rayshade

@@ -12,6 +12,7 @@
 #include "rayshade/image/netpbm_file.h"
 #include "rayshade/image/picture_format.h"
 #include "rayshade/image/png_file.h"
+#include "rayshade/image/raster_file.h"
 
 namespace rayshade {
 namespace {
@@ -113,15 +114,21 @@ std::string readFile(const std::string& name) {
   return content;
 }
 
+Picture pictureOf(const Raster& raster) {
+  Picture picture{raster.width, raster.height, {}};
+  const auto channels = static_cast<std::size_t>(raster.channels);
+  picture.pixels.reserve(raster.levels.size() / channels * 3);
+  for (std::size_t at = 0; at < raster.levels.size(); at += channels)
+    for (std::size_t color = 0; color < 3; ++color)
+      picture.pixels.push_back(lightOf(raster.levels[channels > 2 ? at + color : at], raster.most));
+  return picture;
+}
+
 }  // namespace
 
 Picture readPicture(const std::string& fileName) {
   const std::string content = readFile(fileName);
-  if (content.starts_with("\x89PNG")) return readPng(content, fileName);
-  if (content.starts_with("P6")) return readPpm(content, fileName);
-  if (content.starts_with("PF")) return readPfm(content, fileName);
-  if (!content.empty() && content[0] >= '0' && content[0] <= '9') return readGeneric(content, fileName);
-  failOn(fileName, "is not a PNG, PPM (P6), PFM (PF) or generic picture");
+  return content.starts_with("PF") ? readPfm(content, fileName) : pictureOf(readRaster(content, fileName));
 }
 
 }  // namespace rayshade

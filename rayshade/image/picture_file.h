@@ -49,7 +49,7 @@ class PictureWriter {
   std::unique_ptr<PngStream> png_;
 };
 
-// Reads PNG, PPM (P6), PFM and generic files, told apart by how they begin.  A level n becomes the smallest float
+// Reads PFM and what raster_file.h does, told apart by how they begin.  A level n becomes the smallest float
 // that is written as n again with gamma 1; gamma and colour spaces are not looked at, transparency is dropped.
 // Throws std::runtime_error with the file's name.
 Picture readPicture(const std::string& fileName);

@@ -55,6 +55,10 @@ struct PngSource {
   }
 };
 
+// A byte of a PNG stands for at most 1032 bytes of pixels (zlib, Maximum Compression Factor), and a byte may hold eight
+// pixels, each of which becomes four levels when the palette is looked up.
+constexpr std::size_t kMostPerByte = 1032 * 8 * 4;
+
 struct PngReader {
   png_structp png = nullptr;
   png_infop info = nullptr;
@@ -101,48 +105,45 @@ void PngStream::finish() {
   state_->run([&] { png_write_end(state_->png, state_->info); });
 }
 
-Picture readPng(std::string_view content, const std::string& name) {
+Raster readPng(std::string_view content, const std::string& name) {
   PngMessage message;
   PngSource source{content};
   PngReader reader;
-  auto check = [&](bool good) {
-    if (!good) giveUp(name, message);
+  auto run = [&](const auto& calls) {
+    if (!succeeds(reader.png, calls)) giveUp(name + ": damaged PNG", message);
   };
   reader.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &message, keepMessage, dropWarning);
-  check(reader.png != nullptr);
-  reader.info = png_create_info_struct(reader.png);
-  check(reader.info != nullptr);
+  if (reader.png != nullptr) reader.info = png_create_info_struct(reader.png);
+  if (reader.info == nullptr) giveUp(name, message);
 
-  check(succeeds(reader.png, [&] {
+  run([&] {
     png_set_read_fn(reader.png, &source, PngSource::read);
     png_read_info(reader.png, reader.info);
-    png_set_expand(reader.png);
-    png_set_gray_to_rgb(reader.png);
-    png_set_strip_alpha(reader.png);
+    png_set_expand(reader.png);  // palettes and fewer than 8 bits to 8, a transparent colour to alpha
     png_set_interlace_handling(reader.png);
     png_read_update_info(reader.png, reader.info);
-  }));
-  Picture picture;
-  picture.width = static_cast<std::int32_t>(png_get_image_width(reader.png, reader.info));
-  picture.height = static_cast<std::int32_t>(png_get_image_height(reader.png, reader.info));
-  // A byte of a PNG stands for at most 1032 bytes of pixels (zlib, Maximum Compression Factor), and a pixel of
-  // the file has at least one bit: what it claims is believed only if it can be there.
-  constexpr std::size_t kMostPerByte = 1032 * 8;
-  const std::size_t values = countValues(picture, 1, content.size() * kMostPerByte * 3, name);
+  });
+  Raster raster;
+  raster.width = static_cast<std::int32_t>(png_get_image_width(reader.png, reader.info));
+  raster.height = static_cast<std::int32_t>(png_get_image_height(reader.png, reader.info));
+  raster.channels = png_get_channels(reader.png, reader.info);
+  const bool wide = png_get_bit_depth(reader.png, reader.info) == 16;
+  raster.most = wide ? 65535 : 255;
+  raster.levels.resize(countLevels(raster, kMostPerByte * content.size(), name));
 
-  const std::size_t size = png_get_bit_depth(reader.png, reader.info) == 16 ? 2 : 1;
-  std::vector<png_byte> bytes(values * size);
+  // Rows of bytes lie at the beginning of the levels until all are there.
+  auto* const bytes = reinterpret_cast<std::uint8_t*>(raster.levels.data());
+  const std::size_t length = png_get_rowbytes(reader.png, reader.info);
   std::vector<png_bytep> rows;
-  const std::size_t length = bytes.size() / static_cast<std::size_t>(picture.height);
-  for (std::size_t at = 0; at < bytes.size(); at += length) rows.push_back(&bytes[at]);
-  check(png_get_rowbytes(reader.png, reader.info) == length);
-  check(succeeds(reader.png, [&] { png_read_image(reader.png, rows.data()); }));
-
-  const std::uint32_t most = size == 2 ? 65535 : 255;
-  picture.pixels.reserve(values);
-  for (std::size_t i = 0; i < bytes.size(); i += size)
-    picture.pixels.push_back(lightOf(size == 2 ? bytes[i] * 256u + bytes[i + 1] : bytes[i], most));
-  return picture;
+  for (std::size_t row = 0; row < static_cast<std::size_t>(raster.height); ++row)
+    rows.push_back(bytes + row * length);
+  run([&] {
+    png_read_image(reader.png, rows.data());
+    png_read_end(reader.png, nullptr);
+  });
+  for (std::size_t i = raster.levels.size(); i-- > 0;)
+    raster.levels[i] = static_cast<std::uint16_t>(wide ? bytes[2 * i] << 8 | bytes[2 * i + 1] : bytes[i]);
+  return raster;
 }
 
 }  // namespace rayshade

@@ -3,9 +3,10 @@
 #pragma once
 
 #include <memory>
+#include <string_view>
 
 #include "rayshade/image/complete_file.h"
-#include "rayshade/image/picture.h"
+#include "rayshade/image/raster.h"
 
 namespace rayshade {
 
@@ -26,6 +27,6 @@ class PngStream {
 };
 
 // `name`: of the file, for messages.
-Picture readPng(std::string_view content, const std::string& name);
+Raster readPng(std::string_view content, const std::string& name);
 
 }  // namespace rayshade

@@ -2,6 +2,9 @@
 #include "rayshade/language/argument_reader.h"
 
 #include <array>
+#include <utility>
+
+#include "rayshade/base/file.h"
 
 namespace rayshade {
 namespace {
@@ -25,7 +28,15 @@ bool ArgumentReader::numberFollows() {
          symbolFollows('(');
 }
 
-double ArgumentReader::number() {
+double ArgumentReader::take(const Range& range, bool whole) {
+  const TokenPlace place = token().place;
+  double value = unchecked();
+  if (whole) value = std::trunc(value);
+  if (!range.holds(value)) throw Fault{outOfRange(value, range, whole), place};
+  return value;
+}
+
+double ArgumentReader::unchecked() {
   if (!symbolFollows('(')) return signedNumber();
   const TokenPlace place = token().place;
   const Expression value = expression();
@@ -47,11 +58,17 @@ double ArgumentReader::signedNumber() {
   return negative ? -value : value;
 }
 
-std::string ArgumentReader::fileName() {
-  if (!unread_) return tokens_.fileName();
-  std::string name = std::move(*unread_);
-  unread_.reset();
-  return name;
+std::string ArgumentReader::inputFile() {
+  UnreadName name;
+  if (unread_) {
+    name = *std::exchange(unread_, std::nullopt);
+  } else {
+    name.place = token().place;
+    name.text = tokens_.fileName();
+  }
+  auto found = findFile(name.text, tokens_.describe(name.place).file);
+  if (const auto* problem = std::get_if<FileProblem>(&found)) throw Fault{problem->message, name.place};
+  return std::get<std::string>(std::move(found));
 }
 
 bool ArgumentReader::accept(std::string_view word) {
@@ -123,7 +140,7 @@ Surface ArgumentReader::components(Surface s) {
         s.diffuse = color();
         break;
       case Word::extinct:
-        s.extinct = number();
+        s.extinct = number(kShare);
         break;
       case Word::index:
         s.index = number();
@@ -132,21 +149,21 @@ Surface ArgumentReader::components(Surface s) {
         s.noShadow = true;
         break;
       case Word::reflect:
-        s.reflect = number();
+        s.reflect = number(kFactor);
         break;
       case Word::specpow:
-        s.specularPower = number();
+        s.specularPower = number(kExponent);
         break;
       case Word::specular:
         s.specular = color();
         break;
       case Word::translucency:
-        s.translucency = number();
+        s.translucency = number(kFactor);
         s.translucent = color();
-        s.translucentPower = number();
+        s.translucentPower = number(kExponent);
         break;
       default:
-        s.transparency = number();
+        s.transparency = number(kFactor);
         break;
     }
   }

@@ -21,16 +21,20 @@ namespace rayshade {
 class ArgumentReader final : public Arguments {
  public:
   using Warn = std::function<void(const TokenPlace&, const std::string&)>;
+  // The name of a file that was taken for something else at first.
+  struct UnreadName {
+    std::string text;
+    TokenPlace place;
+  };
 
   ArgumentReader(Tokens& tokens, SurfaceTable& surfaces, Warn warn)
       : tokens_(tokens), surfaces_(surfaces), warn_(std::move(warn)) {}
 
   // Arguments
-  double number() override;
   bool numberFollows() override;
   bool accept(std::string_view word) override;
   bool fileNameFollows() override { return unread_.has_value() || tokens_.fileNameFollows(); }
-  std::string fileName() override;
+  std::string inputFile() override;
   Surface surface() override;
   void warn(const std::string& message) override { warn_(subject, message); }
   [[noreturn]] void fail(const std::string& message) override { throw Fault{message, subject}; }
@@ -46,15 +50,18 @@ class ArgumentReader final : public Arguments {
   BoundSurface boundSurface(SceneSink& sink);  // a surface-spec, for an object
   // The same when the name at its beginning has been read already.
   BoundSurface boundSurface(std::string_view name, const TokenPlace& place, SceneSink& sink);
-  void unread(std::string fileName) { unread_ = std::move(fileName); }  // the next fileName() gives it back
-  TransformChain transforms();                                          // any number of them
-  [[noreturn]] void unexpected(std::string_view wanted) const;          // something else stands here
+  std::string fileName() { return tokens_.fileName(); }
+  void unread(UnreadName name) { unread_ = std::move(name); }   // the next inputFile() gives it back
+  TransformChain transforms();                                  // any number of them
+  [[noreturn]] void unexpected(std::string_view wanted) const;  // something else stands here
 
   TokenPlace subject;    // the keyword whose arguments are being read
   BoundSurface current;  // `cursurf`: what `applysurf` has set where we are
   Variables variables;
 
  private:
+  double take(const Range& range, bool whole) override;
+  double unchecked();  // a number
   bool symbolFollows(char symbol) const;
   double signedNumber();
   Surface components(Surface base);  // any number of components, changing a surface
@@ -63,7 +70,7 @@ class ArgumentReader final : public Arguments {
   Tokens& tokens_;
   SurfaceTable& surfaces_;
   Warn warn_;
-  std::optional<std::string> unread_;
+  std::optional<UnreadName> unread_;
 };
 
 }  // namespace rayshade

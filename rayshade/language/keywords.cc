@@ -11,11 +11,6 @@
 namespace rayshade {
 namespace {
 
-struct Entry {
-  std::string_view text;
-  Keyword keyword;
-};
-
 constexpr std::pair<std::string_view, Word> kWords[] = {
     {"ambient", Word::ambient},
     {"aperture", Word::aperture},
@@ -187,7 +182,7 @@ static_assert(
 
 // A hash table with linear probing, filled by the compiler.
 struct Table {
-  std::array<Entry, kSlots> slots{};
+  std::array<WordOfTheLanguage, kSlots> slots{};
   std::size_t used = 0;
 
   constexpr std::size_t find(std::string_view text) const {  // its slot, or the free one where it would stand
@@ -211,6 +206,14 @@ static_assert(kTable.used <= kSlots / 2, "raise kSlots: looking for names takes 
 Keyword findKeyword(std::string_view text) {
   if (text.size() > kLongestWord) return {};
   return kTable.slots[kTable.find(text)].keyword;
+}
+
+std::vector<WordOfTheLanguage> wordsOfTheLanguage() {
+  std::vector<WordOfTheLanguage> words;
+  forEachWordOfTheLanguage([&words](std::string_view text, Keyword keyword) {
+    words.push_back({text, keyword});
+  });
+  return words;
 }
 
 }  // namespace rayshade

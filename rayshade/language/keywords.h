@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <string_view>
+#include <vector>
 
 namespace rayshade {
 
@@ -85,6 +86,12 @@ struct Keyword {
 };
 
 Keyword findKeyword(std::string_view text);
+
+struct WordOfTheLanguage {
+  std::string_view text;
+  Keyword keyword;
+};
+std::vector<WordOfTheLanguage> wordsOfTheLanguage();  // all of them
 
 constexpr bool isComponent(Word word) { return word >= Word::ambient && word <= Word::transparent; }
 constexpr bool isTransform(Word word) { return word >= Word::rotate && word <= Word::translate; }

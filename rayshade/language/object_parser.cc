@@ -49,7 +49,7 @@ SurfaceId surfaceBeforeFile(ArgumentReader& in, SceneSink& sink) {
   const TokenPlace place = in.token().place;
   const std::string first = in.fileName();
   if (isComponent(in.word()) || in.fileNameFollows()) return in.boundSurface(first, place, sink).id;
-  in.unread(first);
+  in.unread({first, place});
   return kNoSurface;
 }
 

@@ -18,6 +18,7 @@
 
 #include "rayshade/base/error.h"
 #include "rayshade/base/interruption.h"
+#include "rayshade/language/tokens.h"
 
 namespace rayshade {
 namespace {
@@ -96,13 +97,15 @@ bool hasDirective(int text, const std::string& name) {
     const ssize_t got = ::pread(text, block.data(), block.size(), offset);
     if (got < 0) failWith(name, "cannot be read", errno);
     if (got == 0) return false;
-    const char* const begin = block.data();
+    const char* begin = block.data();
     const char* const end = begin + got;
+    if (offset == 0 && std::string_view(begin, end).starts_with(kByteOrderMark))
+      begin += kByteOrderMark.size();
     for (const char* p = begin; p < end; ++p) {
       p = static_cast<const char*>(std::memchr(p, '#', static_cast<std::size_t>(end - p)));
       if (p == nullptr) break;
       const bool first = (p == begin ? before : p[-1]) == '\n';
-      if (first && directiveAt(text, offset + (p - begin))) return true;
+      if (first && directiveAt(text, offset + (p - block.data()))) return true;
     }
     before = end[-1];
     offset += got;

@@ -16,8 +16,10 @@ enum class Class : std::uint8_t { other, space, newline, letter, digit, symbol }
 
 constexpr std::array<Class, 256> kClasses = [] {
   std::array<Class, 256> classes{};
-  // differs from rayshade4: a carriage return is white space, with and without the preprocessor.
-  for (const char c : {' ', '\t', '\r', '\f', '\v'}) classes[static_cast<unsigned char>(c)] = Class::space;
+  // differs from rayshade4: a carriage return is white space, with and without the preprocessor; so are the
+  // Ctrl-Z that ends old files, and the byte order mark.
+  for (const char c : {' ', '\t', '\r', '\f', '\v', '\x1a'})
+    classes[static_cast<unsigned char>(c)] = Class::space;
   classes['\n'] = Class::newline;
   for (int c = 'a'; c <= 'z'; ++c) classes[static_cast<std::size_t>(c)] = Class::letter;
   for (int c = 'A'; c <= 'Z'; ++c) classes[static_cast<std::size_t>(c)] = Class::letter;
@@ -129,6 +131,12 @@ void Tokens::advance() {
         return finish(Token::Kind::symbol, text_.next + 1);
       case Class::other:
         if (text_.next == text_.end()) return finish(Token::Kind::end, text_.next);
+        if (std::string_view(text_.next, text_.left()).starts_with(kByteOrderMark)) {
+          const bool first = text_.offsetOf(text_.next) == lineStart_;
+          text_.next += kByteOrderMark.size();
+          if (first) lineStart_ = text_.offsetOf(text_.next);  // no column for it
+          continue;
+        }
         if (c == '#' && text_.offsetOf(text_.next) == lineStart_) {
           readMarker();
           continue;

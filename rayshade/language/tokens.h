@@ -37,6 +37,9 @@ struct Token {
   TokenPlace place;
 };
 
+// Some editors put it before UTF-8.  White space.
+inline constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+
 // What is wrong with the text.  After a hopeless one there is no point in reading on.
 struct Fault {
   std::string message;

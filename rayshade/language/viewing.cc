@@ -25,22 +25,22 @@ void readCrop(ArgumentReader& in, PictureSpec& picture) {
 }
 
 void readCutoff(ArgumentReader& in, Limits& limits) {
-  const double r = in.number();
+  const double r = in.number(kFactor);
   limits.cutoff = {r, r, r};
   if (!in.numberFollows()) return;
-  limits.cutoff.g = in.number();
-  limits.cutoff.b = in.number();
+  limits.cutoff.g = in.number(kFactor);
+  limits.cutoff.b = in.number(kFactor);
 }
 
 void readFilter(ArgumentReader& in, PixelFilter& filter) {
   filter.gaussian = in.accept("gauss");
   if (!filter.gaussian && !in.accept("box")) in.unexpected("`box` or `gauss`");
   filter.width = filter.gaussian ? 1.8 : 1;
-  if (in.numberFollows()) filter.width = in.number();
+  if (in.numberFollows()) filter.width = in.number(kNotNegative);
 }
 
 void readSample(ArgumentReader& in, SceneHead& head) {
-  head.picture.samplesPerSide = head.settings.samplesPerSide = in.integer();
+  head.picture.samplesPerSide = head.settings.samplesPerSide = in.integer({1, kMaxSamplesPerSide});
   if (in.accept("jitter")) head.picture.jitter = true;
   if (in.accept("nojitter")) head.picture.jitter = false;
 }
@@ -49,10 +49,7 @@ void readReport(ArgumentReader& in, ReportSpec& report) {
   report.wanted = true;
   if (in.accept("verbose")) report.verbose = true;
   if (in.accept("quiet")) report.quiet = true;
-  if (in.numberFollows()) {
-    report.everyRows = in.integer();
-    if (report.everyRows < 1) in.fail("a report is at most one for each row: its frequency is at least 1");
-  }
+  if (in.numberFollows()) report.everyRows = in.integer(kPositiveWholeNumber);
   if (in.fileNameFollows()) report.file = in.fileName();
 }
 
@@ -60,11 +57,11 @@ void readReport(ArgumentReader& in, ReportSpec& report) {
 void readLight(ArgumentReader& in, SceneSettings& settings) {
   const TokenPlace statement = in.subject;
   LightSource light;
-  const double r = in.number();
+  const double r = in.number(kFactor);
   light.color = {r, r, r};
   if (in.numberFollows()) {
-    light.color.g = in.number();
-    light.color.b = in.number();
+    light.color.g = in.number(kFactor);
+    light.color.b = in.number(kFactor);
   }
   if (in.accept("ambient")) {
     settings.ambient = light.color;
@@ -86,8 +83,7 @@ void readLight(ArgumentReader& in, SceneSettings& settings) {
 void readAtmosphere(ArgumentReader& in, SceneSettings& settings) {
   const TokenPlace statement = in.subject;
   double index = 1;
-  if (in.numberFollows()) index = in.number();
-  if (!(index > 0)) in.fail("the index of refraction of the atmosphere must be above 0");
+  if (in.numberFollows()) index = in.number(kPositive);
   std::vector<AnyEffect> effects;
   while (in.word() == Word::effect) {
     const Token type = in.token();
@@ -140,15 +136,15 @@ bool readViewing(Word word, ArgumentReader& in, SceneHead& head) {
       camera.focalDistance = in.number();
       return true;
     case Word::fov:
-      camera.horizontalFov = in.number();
+      camera.horizontalFov = in.number(kFieldOfView);
       camera.verticalFov.reset();
-      if (in.numberFollows()) camera.verticalFov = in.number();
+      if (in.numberFollows()) camera.verticalFov = in.number(kFieldOfView);
       return true;
     case Word::framelength:
       picture.frameLength = in.number();
       return true;
     case Word::frames:
-      picture.frames = in.integer();
+      picture.frames = in.integer(kPositiveWholeNumber);
       return true;
     case Word::lightSource:
       readLight(in, head.settings);
@@ -175,8 +171,8 @@ bool readViewing(Word word, ArgumentReader& in, SceneHead& head) {
       readSample(in, head);
       return true;
     case Word::screen:
-      picture.width = in.integer();
-      picture.height = in.integer();
+      picture.width = in.integer({1, kMaxPictureSide});
+      picture.height = in.integer({1, kMaxPictureSide});
       return true;
     case Word::shadowtransp:
       head.settings.transparentShadows = !head.settings.transparentShadows;

@@ -24,11 +24,9 @@ struct AreaLight {
     AreaLight light;
     light.corner = in.vector();
     light.edgeU = in.vector() - light.corner;
-    light.countU = in.integer();
+    light.countU = in.integer(kPositiveWholeNumber);
     light.edgeV = in.vector() - light.corner;
-    light.countV = in.integer();
-    if (light.countU < 1 || light.countV < 1)
-      in.fail("an area light needs at least 1 sample along each side");
+    light.countV = in.integer(kPositiveWholeNumber);
     if (light.countU > kMostPoints / light.countV) in.fail("an area light has at most 65536 samples");
     if (light.edgeU == Vec3{} || light.edgeV == Vec3{}) in.fail("a side of the area light has length 0");
     return light;

@@ -27,7 +27,7 @@ struct SpotLight {
     SpotLight light;
     light.position = in.vector();
     const Vec3 way = in.vector() - light.position;
-    light.coefficient = in.number();
+    light.coefficient = in.number({0, kExponent.most});
     double inner = 0, outer = 0;
     if (in.numberFollows()) {
       inner = in.number();

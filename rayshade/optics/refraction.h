@@ -5,6 +5,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "rayshade/base/vec.h"
@@ -27,9 +29,11 @@ inline std::optional<Vec3> refracted(Vec3 direction, Vec3 normal, double n1, dou
   return normalize(eta * direction + (eta * c1 - std::sqrt(squared)) * normal);
 }
 
-// Phong's highlight, cos(alpha)^power; no highlight with power 0 (rayshade's rule).
+// Phong's highlight, cos(alpha)^power; no highlight with power 0 (rayshade's rule).  Bounded: where the normal is not unit
+// the cosine may be above 1.
 inline double phongLobe(double cosine, double power) {
-  return power >= 1e-5 && cosine > 0 ? std::pow(cosine, power) : 0.0;
+  constexpr double kMost = 1e30;
+  return power >= 1e-5 && cosine > 0 ? std::min(std::pow(cosine, power), kMost) : 0.0;
 }
 
 }  // namespace rayshade

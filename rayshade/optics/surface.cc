@@ -22,4 +22,11 @@ Surface blend(const Surface& one, double p, const Surface& other, double q) {
   return mixed;
 }
 
+void limit(Surface& s) {
+  for (Color* color : {&s.ambient, &s.diffuse, &s.specular, &s.body, &s.translucent})
+    *color = limited(*color);
+  for (double* factor : {&s.specularPower, &s.reflect, &s.transparency, &s.index, &s.translucency})
+    *factor = std::clamp(*factor, -kMostLight, kMostLight);
+}
+
 }  // namespace rayshade

@@ -39,6 +39,9 @@ inline constexpr double kNegligible = 1e-5;
 // p of one surface and q of another, property by property.
 Surface blend(const Surface& one, double p, const Surface& other, double q);
 
+// What textures make of a surface, one after another, is kept far from infinite.
+void limit(Surface& surface);
+
 template <class Archive>
 void serialize(Archive& archive, Surface& s) {
   archive(s.ambient, s.diffuse, s.specular, s.body, s.translucent, s.specularPower, s.reflect, s.transparency,

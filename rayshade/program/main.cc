@@ -103,6 +103,7 @@ int run(const Options& options) {
     writer.finish();
     times.trace = lap();
     progress.clear();
+    if (!quiet) warnOfNotFinite(result.samples.notFinite);
     if (report) writeReport(reportTo ? reportTo.file() : stderr, scene, result, times, checksum(sum));
   }
   reportTo.close();

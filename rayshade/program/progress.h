@@ -21,6 +21,12 @@ inline void sayLine(std::int32_t rows, std::int32_t allRows, std::int32_t width)
                static_cast<long long>(rows) * width);
 }
 
+inline void warnOfNotFinite(std::uint64_t samples) {
+  if (samples == 0) return;
+  std::fprintf(stderr, "warning: the colours of %llu samples were no finite numbers: they are black\n",
+               static_cast<unsigned long long>(samples));
+}
+
 class ProgressLine {
  public:
   explicit ProgressLine(bool wanted) : shown_(wanted && isatty(STDERR_FILENO)), begin_(secondsNow()) {}

@@ -76,6 +76,11 @@ std::optional<Place> PixelRows::supply(const SampleId& id, Color color) {
   const std::uint64_t bit = std::uint64_t{1} << id.cell;
   if ((pixel.given & bit) == 0 || (pixel.come & bit) != 0) return std::nullopt;
   pixel.come |= bit;
+  // The optics sees to it that this never happens (shading/combine.cc).
+  if (!isFinite(color)) {
+    color = kBlack;
+    ++counts.notFinite;
+  }
 
   if (side == 1) {
     pixel.first = color * rules_.weights[0];

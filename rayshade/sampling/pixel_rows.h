@@ -13,6 +13,7 @@ namespace rayshade {
 struct SamplerCounts {
   std::uint64_t needed = 0;        // samples that the rule asks for, whatever ran ahead
   std::uint64_t given = 0;         // samples that next() has given, some perhaps in vain
+  std::uint64_t notFinite = 0;     // colours that were no finite numbers: black in their place
   std::uint64_t supersampled = 0;  // pixels that got all of their samples (none when there is one in a pixel)
 };
 

@@ -69,7 +69,8 @@ Color finish(Color sum, const ReturnPath& back, Color transmitted, Color reflect
              const SceneSettings& settings) {
   if (back.transmitted) sum = sum + back.transmitWeight * transmitted;
   if (back.reflected) sum = sum + back.reflectWeight * reflected;
-  return attenuated(sum, back.origin, back.direction, back.distance, back.extinct, back.inAir, settings);
+  sum = attenuated(sum, back.origin, back.direction, back.distance, back.extinct, back.inAir, settings);
+  return limited(sum);  // else mirrors that give more than they get would lead to infinity
 }
 
 Color combine(const Intersection& hit, const Gathered& gathered, const SceneSettings& settings) {

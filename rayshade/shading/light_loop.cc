@@ -8,7 +8,8 @@ namespace {
 
 // Could light from this side change the colour?
 bool answers(const Surface& surface, double cosine) {
-  if (cosine > 0) return anyAbove(surface.diffuse, 0) || anyAbove(surface.specular, 0);
+  if (cosine > 0)
+    return surface.diffuse != kBlack || surface.specular != kBlack;  // textures may take light away
   return surface.translucency >= kNegligible;
 }
 
@@ -63,7 +64,7 @@ Color addLight(Color sum, const Surface& surface, const Facing& facing, Vec3 tow
   const double lobe = phongLobe(-along, surface.translucentPower);
   if (lobe > 0) sum = sum + lobe * (surface.body * light);
   // Everything summed so far is scaled, ambient and earlier lights included: what rayshade does.
-  return surface.translucency * sum;
+  return limited(surface.translucency * sum);
 }
 
 }  // namespace rayshade

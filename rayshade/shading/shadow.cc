@@ -29,7 +29,7 @@ bool passSurface(const Model& model, const Hit& hit, ShadowRay& shadow, const Sc
   if (boundSurface(model, path).transparency < kNegligible) return false;
   const SurfacePoint at = evaluateSurface(model, hit, path, shadow.ray, settings);
   if (shadow.inside) shadow.through = shadow.through * std::pow(shadow.insideExtinct, hit.t - shadow.last);
-  shadow.through = shadow.through * (at.surface.transparency * at.surface.body);
+  shadow.through = limited(shadow.through * (at.surface.transparency * at.surface.body));
   if (!anyAbove(shadow.through, kNegligible)) return false;
   shadow.inside = at.entering;
   shadow.insideExtinct = at.surface.extinct;

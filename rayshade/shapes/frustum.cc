@@ -31,7 +31,8 @@ std::optional<Frustum> frustumBetween(Vec3 base, double baseRadius, Vec3 top, do
   // differs from rayshade4: length and radii may be as small as you like, but not zero.
   const Vec3 between = top - base;
   const double height = length(between);
-  const bool finite = isFinite(base) && std::isfinite(height) && std::isfinite(topRadius);
+  constexpr double kMost = 0x1p+500;  // squares stay in the range of numbers
+  const bool finite = maxAbs(base) < kMost && height < kMost && std::isfinite(topRadius);
   if (!(height > 0) || !(baseRadius >= 0) || !(topRadius > 0) || !finite) return std::nullopt;
   return Frustum{base, normalize(between), height, baseRadius, topRadius};
 }

@@ -7,12 +7,15 @@
 #include "rayshade/shapes/height_field.h"
 
 #include <array>
+#include <bit>
 #include <filesystem>
 #include <fstream>
 #include <system_error>
 
 namespace rayshade {
 namespace {
+
+constexpr std::uint32_t kMostAcross = 0x7fffffff;
 
 bool isHole(float z) { return !(z > -1000 && std::isfinite(z)); }
 
@@ -200,6 +203,31 @@ Search searched(const HeightField& field, const LocalRay& ray, double tMin) {
   return search;
 }
 
+std::uint32_t swapped(std::uint32_t word) {
+  return word >> 24 | (word >> 8 & 0xff00u) | (word << 8 & 0xff0000u) | word << 24;
+}
+
+// The number of heights along a side, and whether it is written in the byte order of other machines.
+struct Side {
+  std::uint32_t number;
+  bool foreign;
+};
+
+// A size that fits the file exactly says in which order it is; then one that the file is long enough for.
+// Floats in the wrong order would go unnoticed.
+std::optional<Side> sideOf(std::uint32_t first, std::uint64_t heights) {
+  const Side candidates[] = {{first, false}, {swapped(first), true}};
+  for (const bool exactly : {true, false}) {
+    for (const Side& side : candidates) {
+      const std::uint64_t wanted = std::uint64_t{side.number} * side.number;
+      if (side.number >= 2 && side.number <= kMostAcross &&
+          (wanted == heights || (!exactly && wanted < heights)))
+        return side;
+    }
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::shared_ptr<const Heights> makeHeights(std::int32_t size, std::vector<float> values) {
@@ -227,7 +255,7 @@ std::shared_ptr<const Heights> makeHeights(std::int32_t size, std::vector<float>
 }
 
 std::optional<HeightField> HeightField::parse(Arguments& in) {
-  const std::string name = in.fileName();
+  const std::string name = in.inputFile();
   std::error_code error;
   // A pipe or a folder has no size that could be checked before memory is taken.
   if (!std::filesystem::is_regular_file(name, error)) in.fail(name + ": cannot be read as a height field");
@@ -235,16 +263,18 @@ std::optional<HeightField> HeightField::parse(Arguments& in) {
   std::ifstream file(name, std::ios::binary);
   if (error || !file) in.fail(name + ": cannot be read as a height field");
 
-  std::int32_t size = 0;
-  file.read(reinterpret_cast<char*>(&size), sizeof size);
+  std::uint32_t first = 0;
+  file.read(reinterpret_cast<char*>(&first), sizeof first);
   if (!file) in.fail(name + ": not enough height-field data");
-  if (size < 2) in.fail(name + ": a height field needs 2 x 2 heights or more");
-  const std::uint64_t count = static_cast<std::uint64_t>(size) * static_cast<std::uint64_t>(size);
-  if (count > (bytes - sizeof size) / sizeof(float)) in.fail(name + ": not enough height-field data");
-  std::vector<float> values(count);
-  file.read(reinterpret_cast<char*>(values.data()), static_cast<std::streamsize>(count * sizeof(float)));
+  const auto size = sideOf(first, (bytes - sizeof first) / sizeof(float));
+  if (!size) in.fail(name + ": not enough height-field data");
+  std::vector<float> values(std::size_t{size->number} * size->number);
+  file.read(reinterpret_cast<char*>(values.data()),
+            static_cast<std::streamsize>(values.size() * sizeof(float)));
   if (!file) in.fail(name + ": not enough height-field data");
-  return HeightField{makeHeights(size, std::move(values))};
+  if (size->foreign)
+    for (float& value : values) value = std::bit_cast<float>(swapped(std::bit_cast<std::uint32_t>(value)));
+  return HeightField{makeHeights(static_cast<std::int32_t>(size->number), std::move(values))};
 }
 
 Bounds HeightField::bounds() const {

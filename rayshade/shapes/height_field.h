@@ -2,9 +2,12 @@
 //
 //   heightfield FILE       x, y in [0, 1], z from the file                                     [object units]
 //
-// The file holds an int32 n and n * n float32 in the byte order of the machine, row by row: value k is the
-// height at x = (k mod n)/(n-1), y = (k div n)/(n-1).  A height of -1000 or less, or one that is no number,
-// is a hole: the triangles that touch it vanish.  Each cell is cut by the diagonal from (x+1, y) to (x, y+1).
+// The file holds an int32 n and n * n float32, row by row: value k is the height at x = (k mod n)/(n-1),
+// y = (k div n)/(n-1).  A height of -1000 or less, or one that is no number, is a hole: the triangles that touch
+// it vanish.  Each cell is cut by the diagonal from (x+1, y) to (x, y+1).
+//
+// differs from rayshade4: n and the size of the file tell the byte order; there it is that of the machine.
+//
 // Rays find the cells through a quadtree of least and greatest heights, built where the heights arrive and
 // never sent.  Copies share the heights.
 // SPDX-License-Identifier: BSD-3-Clause

@@ -18,6 +18,21 @@ Vec3 newell(const std::vector<Vec3>& corners, double size) {
   return sum;
 }
 
+// The same of a large triangle of its corners, in their order, for a polygon whose parts cancel in the sum.
+Vec3 normalOfLargeTriangle(const std::vector<Vec3>& corners, double size) {
+  const auto from = [&](std::size_t i) { return (corners[i] - corners[0]) / size; };
+  std::size_t far = 0;
+  for (std::size_t i = 1; i < corners.size(); ++i)
+    if (dot(from(i), from(i)) > dot(from(far), from(far))) far = i;
+  constexpr double kClearly = 1.001;  // of equals the first one, whatever rounding says
+  Vec3 largest;
+  for (std::size_t i = 1; i < corners.size(); ++i) {
+    const Vec3 normal = i < far ? cross(from(i), from(far)) : cross(from(far), from(i));
+    if (length(normal) > kClearly * length(largest)) largest = normal;
+  }
+  return largest;
+}
+
 // Does the outline wind around the ray, or pass through it?
 // differs from rayshade4: the corners are projected along the ray, not along an axis, so that also polygons that
 // are not quite plane have no holes along the edges they share.
@@ -84,9 +99,12 @@ std::optional<Polygon> Polygon::parse(Arguments& in) {
   for (const Vec3& corner : polygon.corners) corners = join(corners, corner);
   const double size = maxAbs(corners.size());
   if (!(size > 0x1p-480)) return std::nullopt;
-  const Vec3 sum = newell(polygon.corners, size);
-  // differs from rayshade4: a polygon may be as small as you like; only one whose area is rounding is not one.
-  if (!(length(sum) > kRounding * static_cast<double>(polygon.corners.size()))) return std::nullopt;
+  Vec3 sum = newell(polygon.corners, size);
+  // differs from rayshade4: a polygon may be as small as you like; only one whose area is rounding is not one.  Two
+  // equal lobes that run against each other have an area, too.
+  const double rounding = kRounding * static_cast<double>(polygon.corners.size());
+  if (!(length(sum) > rounding)) sum = normalOfLargeTriangle(polygon.corners, size);
+  if (!(length(sum) > rounding)) return std::nullopt;
   polygon.normal = normalize(sum);
   double off = 0;  // the farthest corner from the plane
   for (const Vec3& corner : polygon.corners)

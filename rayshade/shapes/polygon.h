@@ -2,8 +2,8 @@
 //
 //   polygon  p1 p2 p3 ...         three corners or more                                        [object units]
 //
-// The plane goes through p1 with Newell's normal; the front is the side from which the corners run
-// counter-clockwise.  The ray is inside when the outline, seen along the ray (shear.h), winds around it a
+// The plane goes through p1 with Newell's normal, or where its sum cancels with that of a large triangle of corners;
+// the front is the side from which the corners run counter-clockwise.  The ray is inside when the outline, seen along the ray (shear.h), winds around it a
 // number of times that is not zero, or passes through it exactly; so polygons that share an edge do not leak.
 // t is that of the plane, but not beyond the extent of the corners and their places in the plane: that matters
 // when the corners are not quite in a plane and the ray grazes it.  When they are visibly not in a plane, corners and hit are projected

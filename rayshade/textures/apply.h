@@ -32,6 +32,7 @@ void applyTexture(const AnyTexture& any, TextureHit& hit, const TexturePlace& pl
         texture.apply(hit);
       },
       any);
+  limit(hit.surface);
   ++hit.turn;
 }
 

@@ -28,7 +28,7 @@ struct Cloud {
 
   static std::optional<Cloud> parse(Arguments& in) {
     Cloud cloud;
-    cloud.scale = in.number();
+    cloud.scale = in.number(kFactor);
     cloud.spectrum = parseSpectrum(in);
     cloud.centre = in.number();
     cloud.limb = in.number();

@@ -49,7 +49,7 @@ std::variant<Colormap, FileProblem> decodeColormap(std::string_view text, const 
 }
 
 Colormap parseColormap(Arguments& in) {
-  const std::string name = in.fileName();
+  const std::string name = in.inputFile();
   const auto bytes = readFile(name, kLargestFile);
   if (const auto* problem = std::get_if<FileProblem>(&bytes)) in.fail(problem->message);
   const Bytes& text = std::get<Bytes>(bytes);

@@ -27,8 +27,8 @@ struct Fbm {
 
   static std::optional<Fbm> parse(Arguments& in) {
     Fbm fbm;
-    fbm.offset = in.number();
-    fbm.scale = in.number();
+    fbm.offset = in.number(kFactor);
+    fbm.scale = in.number(kFactor);
     fbm.spectrum = parseSpectrum(in);
     fbm.threshold = in.number();
     if (in.fileNameFollows()) fbm.colormap = parseColormap(in);

@@ -24,8 +24,8 @@ struct FbmBump {
 
   static std::optional<FbmBump> parse(Arguments& in) {
     FbmBump bump;
-    bump.offset = in.number();
-    bump.scale = in.number();
+    bump.offset = in.number(kFactor);
+    bump.scale = in.number(kFactor);
     bump.spectrum = parseSpectrum(in);
     return bump;
   }

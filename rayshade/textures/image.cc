@@ -93,7 +93,7 @@ bool tiled(double u, double v, double tilesU, double tilesV) {
 
 std::optional<ImageTexture> ImageTexture::parse(Arguments& in) {
   ImageTexture texture;
-  auto read = readImage(in.fileName());
+  auto read = readImage(in.inputFile());
   if (const auto* problem = std::get_if<FileProblem>(&read)) in.fail(problem->message);
   texture.image = std::make_shared<const Image>(std::get<Image>(std::move(read)));
   for (;;) {
@@ -102,8 +102,8 @@ std::optional<ImageTexture> ImageTexture::parse(Arguments& in) {
       if (!component) in.fail("a picture has no such component");
       texture.component = *component;
     } else if (in.accept("range")) {
-      texture.high = in.number();
-      texture.low = in.number();
+      texture.high = in.number(kFactor);
+      texture.low = in.number(kFactor);
     } else if (in.accept("smooth")) {
       texture.smooth = true;
     } else if (in.accept("textsurf")) {

@@ -38,8 +38,9 @@ struct Sky {
     const double f = fractionalMotion(hit.position, spectrum);
     const double share = 0.5 + 0.5 * f * (1 - spectrum.omega);  // f is at most about 1 / (1 - omega)
     double intensity = unitInterval((share - clear) / (opaque - clear));
-    // differs from rayshade4: 0 stays 0 and nothing exceeds 1 when the exponent is below 0
-    if (exponent != 0 && intensity > 0) intensity = unitInterval(std::pow(intensity, exponent));
+    // An exponent below 0 makes bright clouds.  differs from rayshade4: 0 becomes so much and not infinity.
+    constexpr double kBrightest = 1e6;
+    if (exponent != 0) intensity = std::min(std::pow(intensity, exponent), kBrightest);
     hit.surface.transparency = 1 - intensity;
     scaleAmbientAndDiffuse(hit.surface, intensity);
   }

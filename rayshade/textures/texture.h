@@ -17,6 +17,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <concepts>
 #include <optional>
 #include <string_view>
@@ -83,6 +84,7 @@ inline void scaleAmbientAndDiffuse(Surface& surface, Color by) {
   surface.diffuse = surface.diffuse * by;
 }
 inline void scaleAmbientAndDiffuse(Surface& surface, double by) {
+  by = std::clamp(by, kFactor.least, kFactor.most);  // a fractal knows no bounds
   scaleAmbientAndDiffuse(surface, Color{by, by, by});
 }
 

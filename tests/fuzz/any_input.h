@@ -12,6 +12,9 @@ namespace rayshade {
 // A scene: it is read or refused, and what is read keeps the order that SceneSink promises.
 void takeAnyScene(std::span<const std::byte> input);
 
+// A picture: it is read as a whole or refused with a message.
+void takeAnyPicture(std::span<const std::byte> input);
+
 // Packets into the tasks, each with its size (16 bits, little-endian) in front: no crash, no hang, no more memory than
 // the bytes justify.
 void takeAnyPackets(std::span<const std::byte> input);

@@ -36,6 +36,12 @@ TEST(Analytic, TheCosineOfTheLight) {
   EXPECT_NEAR(c.r, std::sqrt(.5), 1e-6);
 }
 
+TEST(Analytic, ANegativeDiffuseColourTakesLightAway) {
+  const std::string scene =
+      "up 0 1 0 light 1 directional 0 0 1 plane ambient .8 .8 .8 diffuse -.5 -.5 -.5 0 0 0 0 0 1";
+  EXPECT_NEAR(colorSeen("0 0 5", "0 0 0", scene).r, .3, 1e-6);
+}
+
 TEST(Analytic, ALightInThePlaneLeavesItBlack) {
   const Rendered r =
       renderSequentially(jobOfText("screen 30 30 sample 1 nojitter eyep 3 -8 4 light 1 point 1 1 0 surface s "

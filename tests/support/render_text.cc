@@ -45,6 +45,7 @@ Rendered renderSequentially(const Job& job, std::uint32_t voxels) {
                                          [&](const std::vector<Color>& row) { appendRow(picture, row); });
     result.frames.push_back(std::move(picture));
     result.counts = result.counts + done.counts;
+    result.notFinite += done.samples.notFinite;
   }
   result.objects = scene.model.store().objectCount();
   return result;

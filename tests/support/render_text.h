@@ -29,6 +29,7 @@ Job jobOfText(std::string text);
 struct Rendered {
   std::vector<Picture> frames;
   TraceCounts counts;
+  std::uint64_t notFinite = 0;
   std::size_t objects = 0;
 };
 // `voxels`: into how many space is cut, without effect on the picture.

@@ -1,10 +1,12 @@
 // Arguments over a string: words and numbers apart by blanks, no expressions.
 //
-// fail() throws std::runtime_error; warnings are kept; surface() gives the default surface without reading.
+// inf and nan are numbers, which the language has none of; fail() throws std::runtime_error; warnings are kept; surface()
+// gives the default surface without reading.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <charconv>
+#include <cmath>
 #include <optional>
 #include <sstream>
 #include <stdexcept>
@@ -22,12 +24,6 @@ class TextArguments final : public Arguments {
     for (std::string word; in >> word;) words_.push_back(word);
   }
 
-  double number() override {
-    const std::optional<double> value = at_ < words_.size() ? numberIn(words_[at_]) : std::nullopt;
-    if (!value) fail("a number is missing");
-    ++at_;
-    return *value;
-  }
   bool numberFollows() override { return at_ < words_.size() && numberIn(words_[at_]).has_value(); }
   bool accept(std::string_view word) override {
     const bool taken = at_ < words_.size() && words_[at_] == word;
@@ -35,7 +31,7 @@ class TextArguments final : public Arguments {
     return taken;
   }
   bool fileNameFollows() override { return at_ < words_.size() && !numberFollows(); }
-  std::string fileName() override {
+  std::string inputFile() override {
     if (at_ == words_.size()) fail("a file name is missing");
     namesFile_ = true;
     return words_[at_++];
@@ -49,6 +45,15 @@ class TextArguments final : public Arguments {
   const std::vector<std::string>& warnings() const { return warnings_; }
 
  private:
+  double take(const Range& range, bool whole) override {
+    std::optional<double> value = at_ < words_.size() ? numberIn(words_[at_]) : std::nullopt;
+    if (!value) fail("a number is missing");
+    ++at_;
+    if (whole) value = std::trunc(*value);
+    if (std::isfinite(*value) && !range.holds(*value)) fail(outOfRange(*value, range, whole));
+    return *value;
+  }
+
   static std::optional<double> numberIn(const std::string& word) {
     double value = 0;
     const char* const end = word.data() + word.size();

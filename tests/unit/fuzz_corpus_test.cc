@@ -24,6 +24,7 @@ void replay(const std::string& corpus, void (*take)(std::span<const std::byte>))
 }
 
 TEST(FuzzCorpus, EveryTextIsReadOrRefused) { replay("scene", takeAnyScene); }
+TEST(FuzzCorpus, EveryPictureIsReadOrRefused) { replay("picture", takeAnyPicture); }
 TEST(FuzzCorpus, EveryRowOfPacketsIsBorne) { replay("wire", takeAnyPackets); }
 
 }  // namespace

@@ -89,14 +89,13 @@ TEST(GenericImage, MayHaveBytesToSpareAndPixelsThatLookLikeText) {
 }
 
 TEST(GenericImage, ThatIsTooShortIsRefusedBeforeMemoryIsTaken) {
-  EXPECT_EQ(problemOf(bytesOf("2 1\nabcde")), "p: 1 bytes short of 2 by 1 pixels");
+  EXPECT_EQ(problemOf(bytesOf("2 1\nabcde")), "p: too short for 2 by 1 pixels");
   EXPECT_NE(problemOf(bytesOf("1000000 1000000\nabc")), "");
 }
 
 TEST(GenericImage, WithABadFirstLineIsRefused) {
-  for (const char* text :
-       {"", "\n", "2\nabc", "0 1\nabc", "-1 1\nabc", "1 1", "1 1 255\nabc", "P6\n1 1\n255\nabc",
-        "99999999999 1\nabc", "4000000000 4000000000\nabc", "1.5 1\nabc"})
+  for (const char* text : {"", "\n", "2\nabc", "0 1\nabc", "-1 1\nabc", "1 1", "1 1 255\nabc", "P4\n1 1\nabc",
+                           "99999999999 1\nabc", "4000000000 4000000000\nabc", "1.5 1\nabc"})
     EXPECT_EQ(problemOf(bytesOf(text)).rfind("p: ", 0), 0u) << text;
 }
 
@@ -192,7 +191,7 @@ TEST(PngImage, ThatClaimsMoreThanItCanHoldIsRefused) {
     for (int bit = 0; bit < 8; ++bit) crc = crc >> 1 ^ (crc & 1 ? 0xedb88320u : 0u);
   }
   for (std::size_t i = 0; i < 4; ++i) bytes[kChecksum + i] = static_cast<std::byte>(~crc >> (24 - 8 * i));
-  EXPECT_EQ(problemOf(bytes), "p: damaged PNG: too short for the size it claims");
+  EXPECT_EQ(problemOf(bytes), "p: too short for 65536 by 65536 pixels");
 }
 
 TEST(ImageFile, ThatIsMissingOrADirectoryIsNamed) {

@@ -103,7 +103,7 @@ TEST(Parser, KeepsLightsInTheirOrder) {
 
 TEST(Parser, SaysWhatIsWrongWithALight) {
   EXPECT_TRUE(errorOf("\nlight 1 directional 0 0 0").starts_with("s.ray:2:9: error: a directional light"));
-  EXPECT_TRUE(errorOf("light 1 area 0 0 0 1 0 0 0 0 1 0 1").starts_with("s.ray:1:9: error: an area light"));
+  EXPECT_TRUE(errorOf("light 1 area 0 0 0 1 0 0 0 0 1 0 1").starts_with("s.ray:1:28: error: a whole number"));
   EXPECT_EQ(errorOf("light 1 sun 0 0 0"), "s.ray:1:9: error: a kind of light is expected here, not `sun`");
 }
 
@@ -120,27 +120,36 @@ TEST(Parser, PrintsValues) {
             (std::vector<std::string>{"10.000000", "5.000000", "5.000000"}));
 }
 
-std::string headError(const std::string& text) {
+std::string headError(const SceneHead& head) {
   try {
-    checkHead(good(text)->head, "s.ray");
+    checkHead(head, "s.ray");
   } catch (const SceneError& error) {
     return error.what();
   }
   return "";
 }
+std::string headError(const std::string& text) { return headError(good(text)->head); }
 
 TEST(Parser, ChecksTheHeadAtTheEnd) {
   EXPECT_EQ(headError(""), "");
   EXPECT_EQ(headError("up 0 8 -1 eyep 0 -8 1"), "s.ray: error: the direction of view is parallel to up");
   EXPECT_NE(headError("eyep 0 0 0").find("the same point"), std::string::npos);
-  EXPECT_NE(headError("sample 9").find("sample count of 9"), std::string::npos);
-  EXPECT_NE(headError("sample 0").find("sample"), std::string::npos);
   EXPECT_NE(headError("screen 100 100 window 0 100 0 99").find("window"), std::string::npos);
   EXPECT_EQ(headError("screen 100 100 window 0 99 0 99"), "");
-  EXPECT_NE(headError("screen 0 100").find("screen"), std::string::npos);
-  EXPECT_NE(headError("screen 1000000000 1000000000").find("screen"), std::string::npos);
-  EXPECT_NE(headError("fov 180").find("fov"), std::string::npos);
-  EXPECT_NE(headError("frames 0").find("frames"), std::string::npos);
+  EXPECT_NE(headError("screen 10 65536 fov 40").find("fov"), std::string::npos);  // the vertical one
+}
+
+TEST(Parser, ChecksWhatTheCommandLineMayHaveChanged) {
+  auto errorAfter = [](auto change) {
+    SceneHead head = good("")->head;
+    change(head.picture);
+    return headError(head);
+  };
+  EXPECT_NE(errorAfter([](PictureSpec& p) { p.samplesPerSide = 9; }).find("sample count of 9"),
+            std::string::npos);
+  EXPECT_NE(errorAfter([](PictureSpec& p) { p.width = 0; }).find("screen"), std::string::npos);
+  EXPECT_NE(errorAfter([](PictureSpec& p) { p.height = 1'000'000'000; }).find("screen"), std::string::npos);
+  EXPECT_NE(errorAfter([](PictureSpec& p) { p.frames = 0; }).find("frames"), std::string::npos);
 }
 
 TEST(Parser, ChecksStereoPictures) {

@@ -115,6 +115,21 @@ TEST(Tokens, NameTheLineWhereAnEndlessCommentBegins) {
 
 TEST(Tokens, TakeACarriageReturnAsBlank) { EXPECT_EQ(split("a\r\nb\tc\n"), "a b c"); }
 
+TEST(Tokens, TakeAControlZAsBlank) { EXPECT_EQ(split("a\r\nb\r\n\x1a"), "a b"); }
+
+TEST(Tokens, TakeAByteOrderMarkAsBlank) {
+  const std::string mark("\xef\xbb\xbf");
+  EXPECT_EQ(split(mark), "");
+  EXPECT_EQ(split(mark + "a b\n\x1a\n" + mark + "c"), "a b c");
+  EXPECT_EQ(split(mark + "# 7 \"x\"\na"), "a");
+  for (std::size_t piece : {1, 2}) {
+    TextTokens t(mark + "a", piece);
+    t.tokens.advance();
+    EXPECT_EQ(describe(t.tokens.describe(t.tokens.current().place)), "scene.ray:1:1");
+  }
+  EXPECT_EQ(faultOf("\xef\xbb").message, "unexpected byte 0xef");
+}
+
 TEST(Tokens, RefuseBytesThatAreNoText) {
   EXPECT_EQ(faultOf("a & b").message, "unexpected `&`");
   EXPECT_FALSE(faultOf("a & b").hopeless);

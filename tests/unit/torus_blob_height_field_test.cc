@@ -1,12 +1,8 @@
-// Torus, blob and height field: known crossings, far origins, the way out from inside, and bad files.
+// Torus, blob and height field: known crossings, far origins, the way out from inside.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
-#include <unistd.h>
 #include <cmath>
-#include <cstdio>
-#include <filesystem>
-#include <fstream>
 #include <numbers>
 
 #include "rayshade/shapes/blob.h"
@@ -314,59 +310,6 @@ TEST(QuarticShapes, ScalingByAPowerOfTwoKeepsTheBits) {
     }
   }
   EXPECT_GT(hits, 50);
-}
-
-class HeightFieldFile : public testing::Test {
- protected:
-  void TearDown() override { std::filesystem::remove(name_); }
-  void write(std::int32_t size, std::size_t heights, std::size_t spareBytes = 0) {
-    std::ofstream file(name_, std::ios::binary);
-    file.write(reinterpret_cast<const char*>(&size), sizeof size);
-    const float height = 0.25f;
-    for (std::size_t i = 0; i < heights; ++i)
-      file.write(reinterpret_cast<const char*>(&height), sizeof height);
-    for (std::size_t i = 0; i < spareBytes; ++i) file.put(0);
-  }
-  std::string failure() {
-    TextArguments arguments(name_);
-    try {
-      HeightField::parse(arguments);
-    } catch (const std::runtime_error& error) {
-      return error.what();
-    }
-    return "none";
-  }
-  const std::string name_ = testing::TempDir() + "height_field_test_" + std::to_string(getpid()) + ".hf";
-};
-
-TEST_F(HeightFieldFile, IsReadRowByRow) {
-  const auto field = parsed<HeightField>("tests/support/hills.hf");
-  ASSERT_TRUE(field);
-  EXPECT_EQ(field->heights->size, 9);
-  EXPECT_EQ(field->heights->values.size(), 81u);
-  EXPECT_EQ(field->heights->values[40], -2000);
-  write(3, 9);
-  EXPECT_EQ(failure(), "none");
-}
-
-TEST_F(HeightFieldFile, ThatPromisesMoreThanItHoldsIsRefused) {
-  write(30000, 1, 2);
-  EXPECT_EQ(failure(), name_ + ": not enough height-field data");
-  write(0x7fffffff, 1);
-  EXPECT_EQ(failure(), name_ + ": not enough height-field data");
-  write(3, 8, 3);
-  EXPECT_EQ(failure(), name_ + ": not enough height-field data");
-}
-
-TEST_F(HeightFieldFile, ThatIsNoFieldIsRefused) {
-  write(1, 1);
-  EXPECT_NE(failure().find(name_), std::string::npos);
-  write(-5, 25);
-  EXPECT_NE(failure().find(name_), std::string::npos);
-  std::filesystem::remove(name_);
-  EXPECT_EQ(failure(), name_ + ": cannot be read as a height field");
-  std::ofstream(name_).close();
-  EXPECT_EQ(failure(), name_ + ": not enough height-field data");
 }
 
 TEST(HeightField, ComesBackFromTheWireWithItsQuadtree) {

@@ -315,6 +315,20 @@ TEST(Polygon, FrontIsWhereTheCornersRunCounterClockwise) {
   EXPECT_EQ(c.u, 0.25);
   EXPECT_EQ(c.v, 0.5);
 }
+TEST(Polygon, WhoseLobesCancelIsDrawn) {
+  const Polygon bow = made<Polygon>("-1 -1 0  1 1 0  1 -1 0  -1 1 0");
+  EXPECT_EQ(bow.normal, (Vec3{0, 0, -1}));  // from the first three corners, in their order
+  auto hits = [](const Polygon& polygon, double x, double y) {
+    return polygon.intersect({{x, y, 5}, {0, 0, -1}, 1}, 0) == 5;
+  };
+  EXPECT_TRUE(hits(bow, 0.8, 0.1) && hits(bow, -0.8, 0.1));
+  EXPECT_FALSE(hits(bow, 0.1, 0.8) || hits(bow, 0.1, -0.8));
+  // Slanted, so that the sum is rounding and not 0.
+  const Polygon slanted = made<Polygon>("0.1 0.3 0.7  0.4 0.6 0.8  0.4 0.3 0.7  0.1 0.6 0.8");
+  EXPECT_LT(length(slanted.normal - normalize(Vec3{0, 1, -3})), 1e-15);
+  EXPECT_FALSE(slanted.bent);
+}
+
 TEST(Polygon, WithoutAreaIsRefusedAndABentOneIsReported) {
   EXPECT_TRUE(refused<Polygon>("0 0 0  1 1 1  2 2 2  3 3 3"));
   EXPECT_TRUE(refused<Polygon>("0.1 0.1 0.1  0.3 0.3 0.3  0.7 0.7 0.7"));
