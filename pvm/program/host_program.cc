@@ -3,7 +3,6 @@
 
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <cinttypes>
 #include <fstream>
 
@@ -13,8 +12,11 @@
 #include "pvm/program/task_table.h"
 #include "pvm/schedule/plan.h"
 #include "rayshade/base/interruption.h"
+#include "rayshade/program/command_line.h"
+#include "rayshade/program/frame_files.h"
 #include "rayshade/program/output_file.h"
 #include "rayshade/program/progress.h"
+#include "rayshade/program/run.h"
 
 namespace rayshade {
 namespace {
@@ -73,21 +75,15 @@ int run(HostProgramOptions& options) {
     return 0;
   }
   const PixelArea area = *pixelArea(head.picture);
-  const std::string outputFile = chooseOutput(options.render, head);
+  const FrameFiles files(options.render, head);
   const bool quiet = options.render.quiet || head.report.quiet;
 
   ParseOptions again = options.render.parse;
   again.warn = nullptr;
   again.print = nullptr;
   const std::int32_t first = head.picture.firstFrame;
-  auto open = [&](std::int32_t frame) {
-    const std::string file = frameFile(outputFile, frame, head.picture.frames);
-    std::optional<PictureFormat> format = options.render.format;
-    if (options.render.sixteenBit && formatOf(file) == PictureFormat::png) format = PictureFormat::png16;
-    return std::make_unique<PictureWriter>(file, area.width, area.height, head.picture.gamma, format);
-  };
   // Whatever is to be written, before any task is started.
-  std::unique_ptr<PictureWriter> writer = open(first);
+  std::unique_ptr<PictureWriter> writer = files.open(first);
   OutputFile table(options.tableFile), report(reportFile(options.render, head));
 
   VirtualMachine machine(options.machine);
@@ -105,7 +101,7 @@ int run(HostProgramOptions& options) {
   const std::int32_t everyRows = rowsBetweenLines(options.render, head);
   Picture sum{area.width, area.height, {}};
   for (std::int32_t frame = first; frame < first + head.picture.frames; ++frame) {
-    if (frame != first) writer = open(frame);
+    if (frame != first) writer = files.open(frame);
     ProgressLine progress(!quiet);
     std::int32_t rows = 0;
     host.renderFrame(
@@ -115,9 +111,10 @@ int run(HostProgramOptions& options) {
           appendRow(sum, row);
           if (everyRows > 0 && ++rows % everyRows == 0) sayLine(rows, area.height, area.width);
         },
-        [&](const HostTask::Completed& p) { progress.show(p.rows, p.allRows, p.samples, "samples"); });
+        [&](const Completed& done) { progress.show(done); });
     writer->finish();
     progress.clear();
+    if (!quiet && files.named()) std::fprintf(stderr, "wrote %s\n", placeOf(files.nameOf(frame)).c_str());
     const std::uint64_t pictureSum = checksum(sum);
     sum.pixels.clear();
     if (frame == first + head.picture.frames - 1) {
@@ -141,11 +138,7 @@ int runHostProgram(int argc, char** argv) {
   CLI::App app("rayshade-host - renders a scene with many tasks on a PVM virtual machine", "rayshade-host");
   HostProgramOptions options;
   declareHostOptions(app, options);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
+  if (const std::optional<int> status = readCommandLine(app, argc, argv)) return *status;
   listenForInterruption();
   options.render.parse.warn = [&](const std::string& message) {
     if (!options.render.quiet) std::fprintf(stderr, "%s\n", message.c_str());
@@ -153,15 +146,7 @@ int runHostProgram(int argc, char** argv) {
   options.render.parse.print = [](const std::string& message) {
     std::fprintf(stderr, "%s\n", message.c_str());
   };
-  try {
-    return run(options);
-  } catch (const SceneError& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    return 1;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "rayshade-host: %s\n", error.what());
-    return 1;
-  }
+  return runProgram("rayshade-host", [&] { return run(options); });
 }
 
 }  // namespace rayshade

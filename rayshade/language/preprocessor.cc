@@ -30,12 +30,13 @@ constexpr std::size_t kShownMessages = 2000;                 // bytes of them th
   throw SceneError(name + ": error: " + what + ": " + std::strerror(error));
 }
 
-// read() that goes on after signals.
+// read() that goes on after signals, except those that end us.
 ssize_t readSome(int descriptor, char* to, std::size_t most) {
-  ssize_t got;
-  do got = ::read(descriptor, to, most);
-  while (got < 0 && errno == EINTR);
-  return got;
+  for (;;) {
+    const ssize_t got = ::read(descriptor, to, most);
+    if (got >= 0 || errno != EINTR) return got;
+    checkInterruption();
+  }
 }
 
 struct CloseFile {
@@ -65,7 +66,11 @@ bool seekable(int descriptor) { return ::lseek(descriptor, 0, SEEK_SET) == 0; }
 int openText(const std::string& fileName, const std::string& name) {
   if (!fileName.empty() && fileName != "-") {
     const int file = ::open(fileName.c_str(), O_RDONLY | O_CLOEXEC);
-    if (file < 0) failWith(name, "cannot be read", errno);
+    if (file < 0) {
+      const int error = errno;
+      checkInterruption();  // nobody may be writing into a named pipe
+      failWith(name, "cannot be read", error);
+    }
     return file;
   }
   if (!seekable(STDIN_FILENO)) {

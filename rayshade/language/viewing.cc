@@ -5,6 +5,7 @@
 #include <array>
 
 #include "rayshade/base/error.h"
+#include "rayshade/image/picture_file.h"
 #include "rayshade/language/parse_member.h"
 
 namespace rayshade {
@@ -161,6 +162,8 @@ bool readViewing(Word word, ArgumentReader& in, SceneHead& head) {
       return true;
     case Word::outfile: {
       const std::string name = in.fileName();
+      if (!formatOf(name))
+        in.warn("`" + name + "` becomes a generic picture: endings are " + kPictureEndings);
       if (head.outputFile.empty()) {
         head.outputFile = name;
       } else {

@@ -223,12 +223,13 @@ TEST_F(Pvm, AKilledHostProgramLeavesNothingRunning) {
 }
 
 TEST_F(Pvm, InterruptionsEndInOrder) {
-  for (int signal : {SIGINT, SIGTERM}) {
+  for (int signal : {SIGINT, SIGTERM, SIGHUP}) {
     const auto host = startHost(std::string("-q --voxels 2 ") + kLong, "picture.pfm");
     ASSERT_TRUE(busyTask("rayshade-voxel-trace").has_value());
     kill(host->pid(), signal);
-    expectOneMessage(host->wait(kPatience), 1);
+    expectOneMessage(host->wait(kPatience), 128 + signal);  // by it, not an exit of its own
     expectNoPicture("picture.pfm");
+    EXPECT_TRUE(std::filesystem::is_empty(scratch_ / "pvm"));
     EXPECT_TRUE(waitFor([this] { return mine().empty(); }, 10)) << "processes are left";
   }
 }
