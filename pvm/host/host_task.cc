@@ -67,7 +67,11 @@ void HostTask::renderFrame(const View& view, const PictureSpec& picture, std::in
     issuing_.issue();
     summary_.peakInFlight = std::max<std::uint64_t>(summary_.peakInFlight, issuing_.inFlight());
     if (options_.dynamicShading) sendWeights();
-    if (progress) progress(sampler.completed());
+    if (progress) {
+      Completed completed = sampler.completed();
+      completed.samples -= issuing_.inFlight();
+      progress(completed);
+    }
     takeEvents(1);
   }
   issuing_.endFrame();

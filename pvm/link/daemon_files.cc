@@ -102,7 +102,8 @@ void removeRouteSockets() {
     const bool ended = commandLine.peek() == std::ifstream::traits_type::eof();
     if (process <= 0 || (!ended && process != getpid())) continue;
     // The daemon of an added host listens at a socket with the number of its parent, which has ended.
-    if (knock(path) == MachineState::stale) unlink(path.c_str());
+    // Our own are still open when the daemon has gone and libpvm could not end in order.
+    if (process == getpid() || knock(path) == MachineState::stale) unlink(path.c_str());
   }
 }
 

@@ -14,7 +14,8 @@ std::optional<Horizon> readHorizon(const std::string& text) {
   char* end = nullptr;
   const double value = std::strtod(text.c_str(), &end);
   const bool inCells = *end == 'c';
-  if (end == text.c_str() || end[inCells ? 1 : 0] != '\0' || !(value >= 0 && std::isfinite(value))) return std::nullopt;
+  if (end == text.c_str() || end[inCells ? 1 : 0] != '\0' || !(value >= 0 && std::isfinite(value)))
+    return std::nullopt;
   return Horizon{inCells ? Horizon::Kind::cells : Horizon::Kind::distance, value};
 }
 

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pvm/program/host_program.h"
 
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cinttypes>
+#include <filesystem>
 #include <fstream>
 
 #include "pvm/host/host_task.h"
 #include "pvm/link/pvm_link.h"
+#include "pvm/link/spawning.h"
 #include "pvm/program/host_options.h"
 #include "pvm/program/task_table.h"
 #include "pvm/schedule/plan.h"
@@ -39,6 +42,11 @@ class FirstPass final : public SceneSink {
   FeatureSink features;
 };
 
+bool regularFile(int descriptor) {
+  struct stat status {};
+  return fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode);
+}
+
 // The hosts that there would be; asks a virtual machine that runs, but changes and starts nothing.
 std::vector<HostInfo> plannedHosts(const MachineOptions& options) {
   std::vector<HostLine> lines;
@@ -57,9 +65,20 @@ std::vector<HostInfo> plannedHosts(const MachineOptions& options) {
   return hostsAfterJoining(running, lines, isThisMachine, name);
 }
 
-int run(HostProgramOptions& options) {
-  // The first pass finds all that is wrong with the scene before anything is started.
+// What needs memory, for the message when there is not enough.
+struct Need {
+  const char* what = "to read the scene";
   FirstPass pass;
+
+  std::string story() const {
+    return std::string(what) + ": the scene has " + std::to_string(pass.features.features().shapeCount()) +
+           " shapes so far; " + memoryOfProcess();
+  }
+};
+
+int run(HostProgramOptions& options, Need& need) {
+  // The first pass finds all that is wrong with the scene before anything is started.
+  FirstPass& pass = need.pass;
   SceneHead head = parseScene(options.render.parse, pass);
   applyOptions(options.render, head);
   Survey survey = pass.survey.survey();
@@ -75,7 +94,8 @@ int run(HostProgramOptions& options) {
     return 0;
   }
   const PixelArea area = *pixelArea(head.picture);
-  const FrameFiles files(options.render, head);
+  const FrameFiles files(options.render, head,
+                         wasSpawned() && !regularFile(STDOUT_FILENO) ? "the pvm console" : "");
   const bool quiet = options.render.quiet || head.report.quiet;
 
   ParseOptions again = options.render.parse;
@@ -99,6 +119,7 @@ int run(HostProgramOptions& options) {
   HostTask host(
       link, [&](SceneSink& sink) { parseScene(again, sink); }, survey, head.settings, options.host);
   const std::int32_t everyRows = rowsBetweenLines(options.render, head);
+  need.what = "for the picture";
   Picture sum{area.width, area.height, {}};
   for (std::int32_t frame = first; frame < first + head.picture.frames; ++frame) {
     if (frame != first) writer = files.open(frame);
@@ -146,7 +167,13 @@ int runHostProgram(int argc, char** argv) {
   options.render.parse.print = [](const std::string& message) {
     std::fprintf(stderr, "%s\n", message.c_str());
   };
-  return runProgram("rayshade-host", [&] { return run(options); });
+  Need need;
+  const int status = runProgram(
+      "rayshade-host", [&] { return run(options, need); }, [&] { return need.story(); });
+  if (status != 0 && wasSpawned())
+    std::fprintf(stderr, "rayshade-host: names of files that do not begin with / are looked for in %s\n",
+                 std::filesystem::current_path().c_str());
+  return status;
 }
 
 }  // namespace rayshade

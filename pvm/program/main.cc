@@ -8,6 +8,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cstdio>
 #include <exception>
+#include <new>
+#include <stdexcept>
 #include <string_view>
 
 #include "pvm/host/host_task.h"
@@ -18,6 +20,7 @@
 #include "pvm/shade/shade_task.h"
 #include "pvm/trace/pyramid_task.h"
 #include "pvm/trace/voxel_task.h"
+#include "rayshade/program/run.h"
 #include "rayshade/program/version.h"
 
 namespace {
@@ -45,7 +48,16 @@ int runSlave(std::string_view name) {
   if (link.parent() == kNobody) return startedByHand(name);  // from the pvm console
   link.watch(link.parent());                                 // nobody works for the dead
   Task task(link);
-  runTask(task, link);
+  try {
+    runTask(task, link);
+  } catch (const std::bad_alloc&) {
+    std::string message = "not enough memory for this task: " + memoryOfProcess();
+    if constexpr (requires { task.share(); })
+      message +=
+          "; its share of the scene: " + objectsAndBytes(task.share().objects(), task.share().bytes()) +
+          " so far";
+    throw std::runtime_error(message);
+  }
   return 0;
 }
 

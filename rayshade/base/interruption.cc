@@ -29,10 +29,14 @@ void listenForInterruption() {
 
 bool interrupted() { return come != 0; }
 
-void checkInterruption() {
-  if (!interrupted()) return;
+std::string interruptionText() {
   for (const auto& [signal, name] : kSignals)
-    if (signal == come) throw Interrupted(name);
+    if (signal == come) return std::string("interrupted by ") + name;
+  return "not interrupted";
+}
+
+void checkInterruption() {
+  if (interrupted()) throw Interrupted(interruptionText());
 }
 
 void dieOfInterruption() {

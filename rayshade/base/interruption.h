@@ -12,13 +12,14 @@ namespace rayshade {
 
 class Interrupted : public std::runtime_error {
  public:
-  explicit Interrupted(const std::string& signal) : std::runtime_error("interrupted by " + signal) {}
+  using std::runtime_error::runtime_error;
 };
 
 void listenForInterruption();
 
 // Has a signal come?
 bool interrupted();
+std::string interruptionText();  // interrupted by SIGINT
 
 // Throws Interrupted when a signal has come.
 void checkInterruption();

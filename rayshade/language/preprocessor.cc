@@ -8,6 +8,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdio>
@@ -23,8 +24,7 @@ namespace rayshade {
 namespace {
 
 constexpr std::size_t kBlock = std::size_t{1} << 16;
-constexpr std::size_t kMostMessages = std::size_t{1} << 16;  // bytes of messages, then cpp is stopped
-constexpr std::size_t kShownMessages = 2000;                 // bytes of them that are passed on
+constexpr std::size_t kMostMessages = std::size_t{1} << 16;  // of messages, then cpp is stopped
 
 [[noreturn]] void failWith(const std::string& name, const std::string& what, int error) {
   throw SceneError(name + ": error: " + what + ": " + std::strerror(error));
@@ -256,16 +256,13 @@ SceneText::Verdict SceneText::verdict() {
     }
     cpp_ = -1;
   }
-  Verdict verdict;
-  verdict.failed = stopped_ || !WIFEXITED(status_) || WEXITSTATUS(status_) != 0;
-  // The way to a message of a deep include is long: the message itself comes first.
-  std::istringstream lines(said_);
-  for (std::string line; std::getline(lines, line) && verdict.messages.size() < kShownMessages;) {
-    if (line.starts_with("In file included from") || line.starts_with("                 from")) continue;
-    verdict.messages += (verdict.messages.empty() ? "" : "\n") + line;
+  Verdict verdict{stopped_ || !WIFEXITED(status_) || WEXITSTATUS(status_) != 0, preprocessorMessages(said_)};
+  const bool saysWhy = std::any_of(verdict.messages.begin(), verdict.messages.end(),
+                                   [](const PreprocessorMessage& m) { return !m.isWarning; });
+  if (verdict.failed && !saysWhy) {
+    const std::string text = "the preprocessor `cpp` has failed";
+    verdict.messages.push_back({false, text, name_ + ": error: " + text});
   }
-  if (verdict.failed && verdict.messages.empty())
-    verdict.messages = name_ + ": error: the preprocessor `cpp` has failed";
   return verdict;
 }
 

@@ -82,5 +82,6 @@ int main(int argc, char** argv) {
       "say.\n"
       "Exit status: 0, 1 for bad files, 2 for a bad command line.");
   if (const std::optional<int> status = readCommandLine(app, argc, argv)) return *status;
-  return runProgram("rayshade-error", [&] { return run(wishes); });
+  return runProgram(
+      "rayshade-error", [&] { return run(wishes); }, [] { return "for the pictures: " + memoryOfProcess(); });
 }

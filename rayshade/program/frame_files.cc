@@ -14,8 +14,8 @@ namespace {
 std::string chooseOutput(const Options& options, const SceneHead& head) {
   if (options.outputFile.empty()) return head.outputFile;
   if (!head.outputFile.empty() && options.parse.warn)
-    options.parse.warn(sceneName(options) + ": warning: outfile " + head.outputFile + " is ignored: -O " +
-                       options.outputFile);
+    options.parse.warn(describe(head.places.last({"outfile"}).value_or(SourcePlace{sceneName(options)})) +
+                       ": warning: outfile " + head.outputFile + " is ignored: -O " + options.outputFile);
   return options.outputFile;
 }
 
@@ -38,11 +38,11 @@ std::string placeOf(const std::string& file) {
   return std::string(host) + ":" + std::filesystem::absolute(file).lexically_normal().string();
 }
 
-FrameFiles::FrameFiles(const Options& options, const SceneHead& head)
+FrameFiles::FrameFiles(const Options& options, const SceneHead& head, const std::string& reads)
     : options_(options), head_(head), name_(chooseOutput(options, head)) {
   // differs from rayshade4, which floods the terminal.
-  if (!named() && isatty(STDOUT_FILENO))
-    throw CommandLineError("a terminal shows no pictures: -O FILE.png, or send standard output elsewhere");
+  if (!named() && (isatty(STDOUT_FILENO) || !reads.empty()))
+    throw CommandLineError((reads.empty() ? "a terminal" : reads) + " shows no pictures: say where to, -O FILE.png");
 }
 
 std::unique_ptr<PictureWriter> FrameFiles::open(std::int32_t frame) const {

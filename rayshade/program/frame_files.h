@@ -17,8 +17,9 @@ std::string placeOf(const std::string& file);
 
 class FrameFiles {
  public:
-  // -O, else what the scene says; warns when both do.  Throws CommandLineError when bytes would go to a terminal.
-  FrameFiles(const Options& options, const SceneHead& head);
+  // -O, else what the scene says; warns when both do.  Throws CommandLineError when the bytes of a picture would go to a
+  // terminal, or to somebody else who `reads` standard output as text: "the pvm console".
+  FrameFiles(const Options& options, const SceneHead& head, const std::string& reads = "");
 
   std::string nameOf(std::int32_t frame) const { return frameFile(name_, frame, head_.picture.frames); }
   bool named() const { return !name_.empty() && name_ != "-"; }  // else standard output

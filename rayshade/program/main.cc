@@ -58,7 +58,19 @@ int printPlan(const Options& options) {
   return 0;
 }
 
-int run(const Options& options) {
+// What needs memory, for the message when there is not enough.
+struct Need {
+  const char* what = "to read the scene";
+  Scene scene;
+
+  std::string story() const {
+    return std::string(what) + ": the scene has " +
+           objectsAndBytes(scene.model.store().objectCount(), scene.bytes()) + " so far; " +
+           memoryOfProcess();
+  }
+};
+
+int run(const Options& options, Need& need) {
   Times times;
   double mark = secondsNow();
   auto lap = [&mark] {
@@ -67,7 +79,7 @@ int run(const Options& options) {
     return spent;
   };
 
-  Scene scene;
+  Scene& scene = need.scene;
   SceneHead head = parseScene(options.parse, scene.model.store());
   applyOptions(options, head);
   if (scene.model.store().objectCount() == 0)
@@ -85,9 +97,11 @@ int run(const Options& options) {
   for (std::int32_t frame = first; frame < first + head.picture.frames; ++frame) {
     const std::unique_ptr<PictureWriter> writer = files.open(frame);
     mark = secondsNow();
+    need.what = "to sort the objects of the scene";
     scene.prepare(exposureOf(head.picture, frame));
     times.build = lap();
     ProgressLine progress(!quiet);
+    need.what = "for the picture";
     Picture sum{area.width, area.height, {}};
     std::int32_t rows = 0;
     const FrameResult result = renderFrame(
@@ -127,5 +141,8 @@ int main(int argc, char** argv) {
     if (!options.quiet) std::fprintf(stderr, "%s\n", message.c_str());
   };
   options.parse.print = [](const std::string& message) { std::fprintf(stderr, "%s\n", message.c_str()); };
-  return runProgram("rayshade", [&] { return plan ? printPlan(options) : run(options); });
+  Need need;
+  return runProgram(
+      "rayshade", [&] { return plan ? printPlan(options) : run(options, need); },
+      [&] { return need.story(); });
 }

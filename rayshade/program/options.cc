@@ -10,7 +10,6 @@ namespace rayshade {
 
 namespace {
 
-constexpr std::int32_t kMostFrames = 1'000'000;
 constexpr std::int32_t kLargestDepth = 10'000;
 constexpr double kHuge = 1e9;
 
@@ -125,11 +124,19 @@ void declareOptions(CLI::App& app, Options& o) {
 void applyOptions(const Options& o, SceneHead& head) {
   PictureSpec& picture = head.picture;
   SceneSettings& settings = head.settings;
+  // What contradicts the scene is said of the option.
+  auto said = [&head](const char* keyword, const char* option) {
+    head.places.set(keyword, SourcePlace{std::string("option ") + option});
+  };
   if (o.resolution.size() == 2) {
+    said("screen", "-R");
     picture.width = o.resolution[0];
     picture.height = o.resolution[1];
   }
-  if (o.window.size() == 4) picture.window = {o.window[0], o.window[1], o.window[2], o.window[3]};
+  if (o.window.size() == 4) {
+    said("window", "-W");
+    picture.window = {o.window[0], o.window[1], o.window[2], o.window[3]};
+  }
   if (o.crop.size() == 4) picture.crop = {o.crop[0], o.crop[1], o.crop[2], o.crop[3]};
   if (o.cutoff.size() == 3) settings.limits.cutoff = {o.cutoff[0], o.cutoff[1], o.cutoff[2]};
   if (o.contrast.size() == 3) picture.contrast = {o.contrast[0], o.contrast[1], o.contrast[2]};
@@ -139,6 +146,7 @@ void applyOptions(const Options& o, SceneHead& head) {
   if (o.firstFrame) picture.firstFrame = *o.firstFrame;
   if (o.gamma) picture.gamma = *o.gamma;
   if (o.eyeSeparation) head.camera.eyeSeparation = *o.eyeSeparation;
+  if (o.leftEye || o.rightEye) said("stereo", o.leftEye ? "-l" : "-r");
   if (o.leftEye) head.camera.eyeShown = Camera::Eye::left;
   if (o.rightEye) head.camera.eyeShown = Camera::Eye::right;
   if (o.gaussian && !head.filterGiven) picture.filter = {true, 1.8};

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <stdexcept>
 #include <string>
@@ -15,7 +16,12 @@ class CommandLineError : public std::runtime_error {
 };
 
 // Does the work and gives the exit status.  Whatever it throws becomes a message; when it was interrupted, it does not
-// come back.
-int runProgram(const std::string& name, const std::function<int()>& work);
+// come back.  `memory`: when there is not enough, what it was for and what is known of the need.
+int runProgram(const std::string& program, const std::function<int()>& work,
+               const std::function<std::string()>& memory);
+
+// For such messages: 17 objects (1.2 MB), and: the process has 34.5 MB.
+std::string objectsAndBytes(std::uint64_t objects, std::uint64_t bytes);
+std::string memoryOfProcess();
 
 }  // namespace rayshade

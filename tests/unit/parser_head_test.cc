@@ -131,7 +131,7 @@ std::string headError(const std::string& text) {
 
 TEST(Parser, ChecksTheHeadAtTheEnd) {
   EXPECT_EQ(headError(""), "");
-  EXPECT_EQ(headError("up 0 8 -1 eyep 0 -8 1"), "s.ray: error: the direction of view is parallel to up");
+  EXPECT_EQ(headError("up 0 8 -1 eyep 0 -8 1"), "s.ray:1:8: error: the direction of view is parallel to up");
   EXPECT_NE(headError("eyep 0 0 0").find("the same point"), std::string::npos);
   EXPECT_NE(headError("sample 9").find("sample count of 9"), std::string::npos);
   EXPECT_NE(headError("sample 0").find("sample"), std::string::npos);
@@ -141,6 +141,16 @@ TEST(Parser, ChecksTheHeadAtTheEnd) {
   EXPECT_NE(headError("screen 1000000000 1000000000").find("screen"), std::string::npos);
   EXPECT_NE(headError("fov 180").find("fov"), std::string::npos);
   EXPECT_NE(headError("frames 0").find("frames"), std::string::npos);
+}
+
+// The last of the statements that contradict each other.
+TEST(Parser, SaysWhereTheHeadIsWrong) {
+  EXPECT_EQ(headError("sample 2\n\n sample 9\nsphere 1 0 0 0\n").substr(0, 18), "s.ray:3:2: error: ");
+  EXPECT_EQ(headError("lookp 1 2 3\neyep 4 5 6\n eyep 1 2 3\nfov 40").substr(0, 18), "s.ray:3:2: error: ");
+  EXPECT_EQ(headError("eyep 1 2 3\nscreen 9 9\nlookp 1 2 3").substr(0, 18), "s.ray:3:1: error: ");
+  EXPECT_EQ(headError("screen 100 100\nwindow 0 100 0 99").substr(0, 18), "s.ray:2:1: error: ");
+  EXPECT_EQ(headError("frames 2000000").substr(0, 18), "s.ray:1:1: error: ");
+  EXPECT_EQ(headError("\nfilter gauss -1").substr(0, 18), "s.ray:2:1: error: ");
 }
 
 TEST(Parser, ChecksStereoPictures) {

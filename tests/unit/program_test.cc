@@ -6,8 +6,10 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <thread>
 
 #include "tests/support/program.h"
@@ -96,6 +98,33 @@ TEST_F(ProgramAsProcess, CanBeInterruptedWhileItReads) {
     EXPECT_TRUE(done.inTime);
     EXPECT_EQ(done.status, 128 + SIGINT);
   }
+}
+
+// A limit of memory that the scene, its acceleration structure, or its picture exceeds.
+TEST_F(ProgramAsProcess, SaysWhatThereIsNotEnoughMemoryFor) {
+  const std::string scene = scratch_ / "balls.ray", bin = programDirectory();
+  const auto limited = [&](int megabytes, const std::string& line) {
+    return Program(
+               {"bash", "-c", "ulimit -v " + std::to_string(1024 * megabytes) + "; exec " + bin + "/" + line},
+               scratch_ / "limited", {{"PVM_TMP", scratch_ / "pvm"}})
+        .wait(60);
+  };
+  ASSERT_EQ(std::system((bin + "/spd balls 5 >" + scene).c_str()), 0);
+  std::set<std::string> needs;
+  for (int megabytes = 16; megabytes <= 120; megabytes += 4) {
+    const Finished done =
+        limited(megabytes, "rayshade -R 9 9 " + scene + " -O " + scratch_ / "pictures/a.png");
+    if (done.status == 0) break;
+    ASSERT_EQ(done.status, 1) << megabytes << done.errors;
+    ASSERT_EQ(countLines(done.errors), 1u) << done.errors;
+    const std::string begin = "rayshade: not enough memory to ";
+    ASSERT_TRUE(done.errors.starts_with(begin)) << done.errors;
+    needs.insert(done.errors.substr(begin.size(), done.errors.find(':', begin.size()) - begin.size()));
+    EXPECT_NE(done.errors.find(" objects ("), std::string::npos) << done.errors;
+    EXPECT_TRUE(fs::is_empty(scratch_ / "pictures"));
+  }
+  EXPECT_TRUE(needs.contains("read the scene")) << needs.size();
+  EXPECT_TRUE(needs.contains("sort the objects of the scene")) << needs.size();
 }
 
 TEST_F(ProgramAsProcess, SaysWhereThePictureWent) {
