@@ -2,22 +2,26 @@
 #include "rayshade/language/preprocessor_messages.h"
 
 #include <algorithm>
-#include <fstream>
 #include <optional>
 #include <regex>
 #include <sstream>
 
 #include "rayshade/base/error.h"
+#include "rayshade/base/file.h"
 
 namespace rayshade {
 namespace {
 
-constexpr std::size_t kShown = 200;  // bytes of a line
+constexpr std::size_t kShown = 200;                           // bytes of a line
+constexpr std::size_t kLargestSource = std::size_t{1} << 26;  // bytes
 
 // The directive that includes `name`, at `from` or above it.
 std::optional<SourcePlace> directiveThatIncludes(const std::string& name, const SourcePlace& from,
                                                  std::string& text) {
-  std::ifstream in(from.file);
+  const auto bytes = readFile(from.file, kLargestSource);
+  if (!std::holds_alternative<Bytes>(bytes)) return std::nullopt;
+  const auto& content = std::get<Bytes>(bytes);
+  std::istringstream in(std::string(reinterpret_cast<const char*>(content.data()), content.size()));
   std::optional<SourcePlace> found;
   std::string line;
   for (std::uint32_t number = 1; number <= from.line && std::getline(in, line); ++number) {
@@ -48,7 +52,12 @@ std::vector<PreprocessorMessage> preprocessorMessages(const std::string& said) {
   static const std::regex option(" \\[-W[a-z-]+\\]$");
   std::vector<std::string> lines;
   std::istringstream in(said);
-  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  for (std::string line; std::getline(in, line);) {
+    // No byte of a file's name may colour a message.
+    std::replace_if(
+        line.begin(), line.end(), [](char c) { return (c >= 0 && c < ' ' && c != '\t') || c == 0x7f; }, '?');
+    lines.push_back(line);
+  }
 
   std::vector<PreprocessorMessage> messages;
   for (std::size_t i = 0; i < lines.size(); ++i) {

@@ -131,7 +131,7 @@ std::string headError(const std::string& text) {
 
 TEST(Parser, ChecksTheHeadAtTheEnd) {
   EXPECT_EQ(headError(""), "");
-  EXPECT_EQ(headError("up 0 8 -1 eyep 0 -8 1"), "s.ray:1:8: error: the direction of view is parallel to up");
+  EXPECT_EQ(headError("up 0 8 -1 eyep 0 -8 1"), "s.ray:1:11: error: the direction of view is parallel to up");
   EXPECT_NE(headError("eyep 0 0 0").find("the same point"), std::string::npos);
   EXPECT_NE(headError("sample 9").find("sample count of 9"), std::string::npos);
   EXPECT_NE(headError("sample 0").find("sample"), std::string::npos);
