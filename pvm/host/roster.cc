@@ -5,11 +5,6 @@
 #include <cmath>
 
 namespace rayshade {
-namespace {
-
-constexpr int kMostEarlyDeaths = 3;
-
-}  // namespace
 
 void enlist(const std::vector<Slave>& slaves, Directory& directory) {
   directory.voxelTasks.clear();
@@ -65,7 +60,7 @@ void Roster::startMissing() {
     if (slave.summary.task != kNobody && ++successions_ > options_.mostSuccessions)
       throw HostError("tasks keep dying: given up after " + std::to_string(options_.mostSuccessions) +
                       " successors; the last to die was " + lastDeath_);
-    if (slave.earlyDeaths >= kMostEarlyDeaths)
+    if (slave.earlyDeaths >= options_.mostEarlyDeaths)
       throw HostError("given up after " + std::to_string(slave.earlyDeaths) +
                       " deaths before it was ready: " + lastDeath_ +
                       "; with more tasks (--voxels) or hosts each holds less of the scene");

@@ -74,7 +74,8 @@ int main(int argc, char** argv) {
   app.add_option("--difference", wishes.difference,
                  "write a picture of the FLIP error of each pixel, black 0 to white 1")
       ->type_name(kFile)
-      ->check(notEmpty());
+      ->check(notEmpty())
+      ->check(pictureFile());
   app.footer(
       "mrse: mean of (v - r)^2 / (|r| + 0.01)^2; rmse: root of the mean of (v - r)^2; flip: mean of "
       "LDR-FLIP, what a "

@@ -42,7 +42,8 @@ FrameFiles::FrameFiles(const Options& options, const SceneHead& head, const std:
     : options_(options), head_(head), name_(chooseOutput(options, head)) {
   // differs from rayshade4, which floods the terminal.
   if (!named() && (isatty(STDOUT_FILENO) || !reads.empty()))
-    throw CommandLineError((reads.empty() ? "a terminal" : reads) + " shows no pictures: say where to, -O FILE.png");
+    throw CommandLineError((reads.empty() ? "a terminal" : reads) +
+                           " shows no pictures: say where to, -O FILE.png");
 }
 
 std::unique_ptr<PictureWriter> FrameFiles::open(std::int32_t frame) const {

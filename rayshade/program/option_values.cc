@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rayshade/program/option_values.h"
 
+#include "rayshade/image/picture_file.h"
+
 namespace rayshade {
 
 CLI::Validator numberFrom(double low, double high) {
@@ -17,6 +19,15 @@ CLI::Validator numberFrom(double low, double high) {
 CLI::Validator notEmpty() {
   return CLI::Validator(
       [](const std::string& text) { return text.empty() ? std::string("an empty name") : std::string(); },
+      "");
+}
+
+CLI::Validator pictureFile() {
+  return CLI::Validator(
+      [](const std::string& name) {
+        if (formatOf(name)) return std::string();
+        return name + ": no format of pictures is called so; there are " + kPictureEndings;
+      },
       "");
 }
 

@@ -32,4 +32,7 @@ CLI::Validator wholeNumberFrom(Whole low, Whole high) {
 // The name of something: an empty one is a variable of the shell that is not set.
 CLI::Validator notEmpty();
 
+// The name of a picture that is to be written: its ending says a format.
+CLI::Validator pictureFile();
+
 }  // namespace rayshade

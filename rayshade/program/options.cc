@@ -13,16 +13,6 @@ namespace {
 constexpr std::int32_t kLargestDepth = 10'000;
 constexpr double kHuge = 1e9;
 
-// The file of a picture has a format.
-CLI::Validator pictureFile() {
-  return CLI::Validator(
-      [](const std::string& name) {
-        if (formatOf(name)) return std::string();
-        return name + ": no format of pictures is called so; there are " + kPictureEndings;
-      },
-      "");
-}
-
 }  // namespace
 
 void declareOptions(CLI::App& app, Options& o) {
@@ -165,7 +155,7 @@ void applyOptions(const Options& o, SceneHead& head) {
 
 std::string sceneName(const Options& options) {
   const std::string& name = options.parse.fileName;
-  return name.empty() || name == "-" ? "standard input" : name;
+  return name.empty() || name == "-" ? "<stdin>" : name;
 }
 
 std::int32_t rowsBetweenLines(const Options& options, const SceneHead& head) {

@@ -83,6 +83,7 @@ TEST_F(CommandLine, ValuesThatMakeNoSenseAreRefused) {
 TEST_F(CommandLine, FilesThatCannotBeMeantAreRefused) {
   expectRefused({"rayshade", "-O", "x.jpg", "no-such.ray"}, ".png, .ppm, .pfm");
   expectRefused({"rayshade-host", "-O", "x.jpg", "no-such.ray"}, ".png, .ppm, .pfm");
+  expectRefused({"rayshade-error", "a.png", "b.png", "--difference", "x.jpg"}, ".png, .ppm, .pfm");
   expectRefused({"rayshade", "-O", "", "no-such.ray"}, "-O");
   expectRefused({"rayshade", ""}, "empty");
   expectRefused({"rayshade", "-V", "", "no-such.ray"}, "-V");
