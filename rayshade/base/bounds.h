@@ -28,6 +28,12 @@ inline Bounds join(const Bounds& a, const Bounds& b) {
 }
 inline Bounds join(const Bounds& a, Vec3 p) { return join(a, Bounds{p, p}); }
 
+// What lies in both; may be empty.
+inline Bounds common(const Bounds& a, const Bounds& b) {
+  return {{std::max(a.low.x, b.low.x), std::max(a.low.y, b.low.y), std::max(a.low.z, b.low.z)},
+          {std::min(a.high.x, b.high.x), std::min(a.high.y, b.high.y), std::min(a.high.z, b.high.z)}};
+}
+
 // Touching counts as overlapping.
 inline bool overlap(const Bounds& a, const Bounds& b) {
   return a.low.x <= b.high.x && b.low.x <= a.high.x && a.low.y <= b.high.y && b.low.y <= a.high.y &&

@@ -52,6 +52,7 @@ class InlineVector {
   const T* end() const { return data() + size_; }
   T& operator[](std::size_t i) { return data()[i]; }
   const T& operator[](std::size_t i) const { return data()[i]; }
+  T& back() { return data()[size_ - 1]; }
   const T& back() const { return data()[size_ - 1]; }
 
   // A new element at the end, to be filled in.

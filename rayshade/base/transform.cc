@@ -6,10 +6,6 @@
 namespace rayshade {
 namespace {
 
-Matrix product(const Matrix& a, const Matrix& b) {  // first a, then b
-  return {mapVector(b, a.x), mapVector(b, a.y), mapVector(b, a.z), mapPoint(b, a.origin)};
-}
-
 Matrix transposed(const Matrix& m) {
   return {{m.x.x, m.y.x, m.z.x}, {m.x.y, m.y.y, m.z.y}, {m.x.z, m.y.z, m.z.z}, {0, 0, 0}};
 }
@@ -25,8 +21,20 @@ Matrix rotationMatrix(Vec3 n, double c, double s) {
 
 }  // namespace
 
+Matrix product(const Matrix& a, const Matrix& b) {
+  return {mapVector(b, a.x), mapVector(b, a.y), mapVector(b, a.z), mapPoint(b, a.origin)};
+}
+
 Affine then(const Affine& first, const Affine& second) {
   return {product(first.forward, second.forward), product(second.inverse, first.inverse)};
+}
+
+bool isInvertible(const Affine& a) {
+  constexpr double kNearly = 0x1p-4;
+  const Matrix round = product(a.forward, a.inverse), identity;
+  const auto near = [](Vec3 row, Vec3 axis) { return isFinite(row) && maxAbs(row - axis) < kNearly; };
+  return isFinite(a.forward.origin) && isFinite(a.inverse.origin) && near(round.x, identity.x) &&
+         near(round.y, identity.y) && near(round.z, identity.z);
 }
 
 Affine translation(Vec3 by) {
@@ -99,13 +107,6 @@ Bounds mapBounds(const Affine& a, const Bounds& bounds) {
   return image;
 }
 
-double stretch(const Matrix& m) {
-  double most = 0;
-  for (int axis = 0; axis < 3; ++axis)
-    most = std::max(most, std::abs(m.x[axis]) + std::abs(m.y[axis]) + std::abs(m.z[axis]));
-  return most;
-}
-
 bool TransformChain::moves() const {
   for (const auto& step : steps)
     if (std::holds_alternative<MovingStep>(step)) return true;
@@ -140,13 +141,15 @@ std::optional<Affine> stepAt(const MovingStep& step, const Moment& moment) {
   return std::nullopt;
 }
 
-Affine chainAt(const TransformChain& chain, const Moment& moment) {
+std::optional<Affine> chainAt(const TransformChain& chain, const Moment& moment) {
   Affine whole;
   for (const auto& step : chain.steps) {
     if (const Affine* constant = std::get_if<Affine>(&step)) {
       whole = then(whole, *constant);
     } else if (const auto moving = stepAt(std::get<MovingStep>(step), moment)) {
       whole = then(whole, *moving);
+    } else {
+      return std::nullopt;
     }
   }
   return whole;

@@ -29,12 +29,20 @@ inline Vec3 mapNormal(const Matrix& inverse, Vec3 n) {
   return {dot(inverse.x, n), dot(inverse.y, n), dot(inverse.z, n)};
 }
 
+// The sizes of all elements, for bounds of errors.
+inline Matrix absolute(const Matrix& m) {
+  return {absolute(m.x), absolute(m.y), absolute(m.z), absolute(m.origin)};
+}
+Matrix product(const Matrix& first, const Matrix& second);
+
 struct Affine {
   Matrix forward, inverse;
   friend bool operator==(const Affine&, const Affine&) = default;
 };
 
 inline bool isIdentity(const Affine& a) { return a == Affine{}; }
+// Do both maps undo each other, nearly?  A product of good maps may have no inverse in doubles.
+bool isInvertible(const Affine& a);
 
 Affine then(const Affine& first, const Affine& second);
 inline Affine inverted(const Affine& a) { return {a.inverse, a.forward}; }
@@ -48,9 +56,6 @@ Affine alongAxis(Vec3 base, Vec3 axis, double radius,
 
 // The bounds of the image of a box; infinite sides give infinite bounds.
 Bounds mapBounds(const Affine& a, const Bounds& bounds);
-
-// How much a map can stretch an error: the largest sum of absolute values of a column.
-double stretch(const Matrix& m);
 
 // One transform as written in a scene, with arguments that may depend on time.
 struct MovingStep {
@@ -70,8 +75,8 @@ struct TransformChain {
 
 // The map of one step at a moment; nothing when it is singular then.
 std::optional<Affine> stepAt(const MovingStep& step, const Moment& moment);
-// The whole chain at a moment.  A step that is singular at that moment is left out.
-Affine chainAt(const TransformChain& chain, const Moment& moment);
+// The whole chain at a moment; nothing when a step is singular then.
+std::optional<Affine> chainAt(const TransformChain& chain, const Moment& moment);
 
 template <class Archive>
 void serialize(Archive& archive, Matrix& m) {

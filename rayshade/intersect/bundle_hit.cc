@@ -3,6 +3,7 @@
 
 #include "rayshade/accel/bvh_bundle.h"
 #include "rayshade/intersect/nearer.h"
+#include "rayshade/intersect/placing.h"
 #include "rayshade/intersect/ray_hit.h"
 
 namespace rayshade {
@@ -48,6 +49,16 @@ class Testers {
   std::vector<RayIntersector> intersectors_;  // made when the first object comes that needs them
 };
 
+bool standsBeforeEnd(const Model& model, const Segment& segment, const Target& target, double t) {
+  if (t < sureUntil(segment.ray.origin, segment.tMax)) [[likely]]
+    return true;
+  Ray ray;
+  ray.origin = segment.ray.origin;
+  ray.direction = segment.ray.direction;
+  ray.moment = segment.moment;
+  return !endsIn(model, ray, {t, target.object}, segment.tMax);
+}
+
 }  // namespace
 
 void nearestHits(const Model& model, const Region& region, std::span<Segment> segments, std::span<Hit> hits,
@@ -90,7 +101,8 @@ void occlusions(const Model& model, const Region& region, std::span<Segment> seg
         testers.test(target, asking & ~stopped & ~(target.opaque ? 0 : filtered),
                      [&](std::size_t i, double t) {
                        ++met[i].tests;
-                       if (t < segments[i].tMax) (target.opaque ? stopped : filtered) |= RaySet{1} << i;
+                       if (t < segments[i].tMax && standsBeforeEnd(model, segments[i], target, t))
+                         (target.opaque ? stopped : filtered) |= RaySet{1} << i;
                      });
       }
       forEachRay(stopped, [&](std::size_t i) { met[i].opaque = true; });

@@ -28,7 +28,7 @@ struct Segment : RayQuery {
 void nearestHits(const Model& model, const Region& region, std::span<Segment> segments, std::span<Hit> hits,
                  Processor processor = thisProcessor());
 
-// Is there something opaque between tMin and tMax?  `transparent` tells whether something else was met, as far as was looked.
+// Is there something opaque between tMin and tMax, where a light is?  What the light lies in does not count (placing.h).  `transparent` tells whether something else was met, as far as was looked.
 struct Occlusion {
   bool opaque = false, transparent = false;
   std::uint32_t tests = 0;  // objects that were tested

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <unordered_set>
 
 #include "rayshade/intersect/csg.h"
 #include "rayshade/intersect/ray_hit.h"
@@ -53,10 +54,14 @@ Bounds Model::boundsOf(ObjectIndex index) const {
   } else {
     own = shapeBounds(store_, object);
   }
-  const PlacedNode& node = store_.node(object.node);
-  if (node.identity) return padded(own);
+  return placedBoundsOf(own, object.node);
+}
+
+Bounds Model::placedBoundsOf(const Bounds& inside, NodeIndex index) const {
+  const PlacedNode& node = store_.node(index);
+  if (node.identity) return padded(inside);
   return placedBounds(
-      own, node.moves, [&](const Moment& moment) { return mapAt(store_, object.node, moment); }, exposure_);
+      inside, node.moves, [&](const Moment& moment) { return mapAt(store_, index, moment); }, exposure_);
 }
 
 Region Model::regionOf(std::vector<ObjectIndex> objects) const {
@@ -82,8 +87,8 @@ Target Model::target(ObjectIndex index) const {
   Target target{index, store_.node(object.node).identity ? 0 : object.node, object.body, object.kind, true};
   if (store_.anyTransparent()) {
     // An instance or CSG is looked into only when it is hit; until then it may be transparent.
-    const bool whole = object.kind != kInstanceKind && object.kind != kCsgKind;
-    target.opaque = whole && store_.surfaceOrDefault(object.surface).transparency < kNegligible;
+    target.opaque = !refersToDefinition(object.kind) &&
+                    store_.surfaceOrDefault(object.surface).transparency < kNegligible;
   }
   return target;
 }
@@ -106,6 +111,9 @@ void Model::prepare(const Exposure& exposure) {
   definitions_.assign(1, {});
   slots_.clear();
   std::unordered_map<std::uint32_t, int> height;  // of nesting inside a definition
+  std::unordered_set<std::uint32_t> operands;     // definitions that are met only through their operation
+  for (std::uint32_t body = 0; body < store_.csgCount(); ++body)
+    operands.insert(number(store_.csg(body).operands));
   for (DefinitionId id : store_.definitions()) {
     std::vector<ObjectIndex> members;
     int inside = 0;
@@ -126,28 +134,40 @@ void Model::prepare(const Exposure& exposure) {
       members.push_back(index);
     }
     Definition definition;
-    for (std::size_t i = 0; i < members.size(); ++i) {
-      if (i < 2) definition.operands[i] = members[i];
-      definition.bounds = join(definition.bounds, boundsOf(members[i]));
-    }
-    definition.region = regionOf(std::move(members));
+    for (ObjectIndex member : members) definition.bounds = join(definition.bounds, boundsOf(member));
+    if (!operands.contains(number(id))) definition.region = regionOf(members);
+    definition.members = std::move(members);
     height[number(id)] = inside + 1;
     slots_[number(id)] = static_cast<std::uint32_t>(definitions_.size());
     definitions_.push_back(std::move(definition));
+  }
+  std::vector<bool> isOperand(store_.objectCount());
+  for (std::uint32_t id : operands)
+    for (ObjectIndex member : membersOf(DefinitionId{id})) isOperand[member] = true;
+  solids_ = std::vector<Solid>(store_.csgCount());
+  for (ObjectIndex index = 0; index < store_.objectCount(); ++index) {
+    const PlacedObject& object = store_.object(index);
+    if (object.kind == kCsgKind && !isOperand[index])
+      solids_[object.body] = solidOf(*this, store_.csg(object), exposure_);
   }
 }
 
 std::size_t Model::bytes() const {
   std::size_t total = store_.bytes();
-  for (const Definition& definition : definitions_) total += definition.region.bytes();
+  for (const Definition& definition : definitions_)
+    total += definition.region.bytes() + definition.members.capacity() * sizeof(ObjectIndex);
+  for (const Solid& solid : solids_) total += solid.bytes();
   return total;
 }
 
 LocalRay intoNode(const SceneStore& store, NodeIndex index, const LocalRay& outer, const Moment& moment) {
   const PlacedNode& node = store.node(index);
   if (node.identity) return outer;
-  if (node.moves) return mappedInto(mapAt(store, index, moment).inverse, outer);
-  return mappedInto(node.toContainer.inverse, outer);
+  if (node.moves) {
+    const std::optional<Affine> map = mapAt(store, index, moment);
+    return map ? mappedInto(map->inverse, outer) : kNowhere;
+  }
+  return node.nowhere ? kNowhere : mappedInto(node.toContainer.inverse, outer);
 }
 
 LocalRay mappedInto(const Matrix& inverse, const LocalRay& outer) {
@@ -164,27 +184,35 @@ HitPath pathTo(const Model& model, const Ray& ray, const Hit& hit) {
   const SceneStore& store = model.store();
   HitPath path;
   LocalRay outer{ray.origin, ray.direction, 1};
-  ObjectIndex index = hit.object;
-  for (;;) {
+  const auto step = [&](ObjectIndex index) {
+    outer = intoNode(store, store.object(index).node, outer, ray.moment);
+    path.steps.push_back({index, outer});
+  };
+  // Goes on among the objects of a region.  False: nothing is there.
+  const auto enter = [&](const Region& region, ObjectIndex& index) {
+    index = nearestHit(model, region, outer, ray.moment, std::nextafter(hit.t, -kInfinity),
+                       std::nextafter(hit.t, kInfinity))
+                .object;
+    return index != kNone;
+  };
+  for (ObjectIndex index = hit.object;;) {
+    step(index);
     const PlacedObject& object = store.object(index);
-    const LocalRay inner = intoNode(store, object.node, outer, ray.moment);
-    path.steps.push_back({index, inner});
     if (object.kind == kInstanceKind) {
-      const Hit inside = nearestHit(model, model.definition(store.instance(object)), inner, ray.moment,
-                                    std::nextafter(hit.t, -kInfinity), std::nextafter(hit.t, kInfinity));
-      if (!inside.found()) break;
-      index = inside.object;
+      if (!enter(model.definition(store.instance(object)), index)) break;
     } else if (object.kind == kCsgKind) {
-      const CsgCrossing crossing =
-          csgCrossing(model, store.csg(object), inner, ray.moment, std::nextafter(hit.t, -kInfinity));
-      if (crossing.operand == kNone) break;
+      const Solid& solid = model.solid(object.body);
+      const Crossing crossing =
+          firstCrossing(model, solid, outer, ray.moment, std::nextafter(hit.t, -kInfinity));
+      if (!crossing.exists()) break;
       // What an outer operation says about the crossing holds: it was made from what the inner one said.
       if (!path.entering) path.entering = crossing.entering;
-      index = crossing.operand;
+      const Solid::Leaf& leaf = solid.leaves[crossing.leaf];
+      for (ObjectIndex inside : wayTo(solid, leaf)) step(inside);
+      if (leaf.sheets == nullptr || !enter(*leaf.sheets, index)) break;
     } else {
       break;
     }
-    outer = inner;
   }
   return path;
 }

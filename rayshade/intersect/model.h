@@ -11,6 +11,7 @@
 
 #include "rayshade/accel/bvh.h"
 #include "rayshade/base/inline_vector.h"
+#include "rayshade/intersect/solid.h"
 #include "rayshade/optics/ray.h"
 #include "rayshade/scene/store.h"
 
@@ -47,22 +48,28 @@ class Model {
 
   void take(std::vector<Item>&& items);
 
-  // After items came in: places them and builds the regions of definitions.  A definition that contains itself, or
-  // nests deeper than kDeepest, is emptied and counted as left out.
+  // After items came in: places them and builds the regions of definitions and CSG operations.  A definition that contains
+  // itself, or nests deeper than kDeepest, is emptied and counted as left out.
   void prepare(const Exposure& exposure);
   std::size_t leftOut() const { return store_.leftOut() + leftOut_; }
 
   Bounds boundsOf(ObjectIndex object) const;  // in the space of its container, padded
+  // The extent of something inside of a node in the space of the node's container, padded.
+  Bounds placedBoundsOf(const Bounds& inside, NodeIndex node) const;
   Region regionOf(std::vector<ObjectIndex> objects) const;
   Target target(ObjectIndex object) const;
   const Region& definition(const Instance& instance) const {
     return definitions_[slot(instance.definition)].region;
   }
-  const Region& operands(const Csg& csg) const { return definitions_[slot(csg.operands)].region; }
-  // The two operands in the order of the file; kNone where one is missing.
-  std::array<ObjectIndex, 2> operandsOf(const Csg& csg) const {
-    return definitions_[slot(csg.operands)].operands;
+  const Bounds& definitionBounds(const Instance& instance) const {
+    return definitions_[slot(instance.definition)].bounds;
   }
+  // What is in a definition, in the order of the file.
+  std::span<const ObjectIndex> membersOf(DefinitionId definition) const {
+    return definitions_[slot(definition)].members;
+  }
+  // The CSG operation with this body; empty if it is met as an operand of others only.
+  const Solid& solid(std::uint32_t body) const { return solids_[body]; }
   std::size_t bytes() const;
 
   static constexpr int kDeepest = 1000;
@@ -71,7 +78,7 @@ class Model {
   struct Definition {
     Region region;
     Bounds bounds;  // in its own space
-    std::array<ObjectIndex, 2> operands{kNone, kNone};
+    std::vector<ObjectIndex> members;
   };
   std::uint32_t slot(DefinitionId id) const {
     const auto found = slots_.find(number(id));
@@ -82,6 +89,7 @@ class Model {
   Exposure exposure_;
   std::vector<Definition> definitions_;  // 0: an empty one, for what never came
   std::unordered_map<std::uint32_t, std::uint32_t> slots_;
+  std::vector<Solid> solids_;  // by body
   std::size_t leftOut_ = 0;
 };
 
@@ -109,8 +117,10 @@ HitPath pathTo(const Model& model, const Ray& ray, const Hit& hit);
 // The local t of the root that is `t` world units along the ray; the shape's own, exact root.
 double rootAt(const Model& model, const PathStep& step, double t);
 
-// The ray in the space inside a node, `outer` being the ray in the space of the node's container.
+// The ray in the space inside a node, `outer` being the ray in the space of the node's container.  A node that has shrunk to nothing
+// at the moment has no inside: then its scale is 0, and it meets nothing.
 LocalRay intoNode(const SceneStore& store, NodeIndex node, const LocalRay& outer, const Moment& moment);
+inline constexpr LocalRay kNowhere{{}, {}, 0};
 LocalRay mappedInto(const Matrix& inverse, const LocalRay& outer);
 
 }  // namespace rayshade

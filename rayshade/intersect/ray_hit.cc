@@ -29,13 +29,15 @@ const LocalRay& RayIntersector::rayIn(NodeIndex node) {
 
 double RayIntersector::intersectAny(const Target& target, double tMin, double tMax) {
   const LocalRay& local = target.node == 0 ? ray_ : rayIn(target.node);
+  if (!(local.scale > 0)) return kNoHit;
   const SceneStore& store = model_.store();
   if (target.kind == kInstanceKind) {
     return nearestHit(model_, model_.definition(store.instance(target.body)), local, moment_, tMin,
                       tMax < kNoHit ? std::nextafter(tMax, kInfinity) : kNoHit)
         .t;
   }
-  if (target.kind == kCsgKind) return csgCrossing(model_, store.csg(target.body), local, moment_, tMin).t;
+  if (target.kind == kCsgKind)
+    return firstCrossing(model_, model_.solid(target.body), local, moment_, tMin).t;
   double t = kNoHit;
   [&]<class... S>(TypeList<S...>) {
     (void)((target.kind == kKindOf<S>

@@ -157,7 +157,11 @@ Surface ArgumentReader::components(Surface s) {
 
 TransformChain ArgumentReader::transforms() {
   TransformChain chain;
+  const TokenPlace place = token().place;
   while (isTransform(word())) appendTransform(chain);
+  for (const auto& step : chain.steps)
+    if (const Affine* constant = std::get_if<Affine>(&step); constant && !isInvertible(*constant))
+      throw Fault{"these transforms together lose all digits: there is no way back", place};
   return chain;
 }
 

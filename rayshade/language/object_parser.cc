@@ -218,10 +218,15 @@ void ObjectParser::aggregate(Scope& scope) {
   Modifiers modifiers = readModifiers(in_, log_);
   if (inner.failed) return;  // how many members there are is not known then
   if (csg) {
-    if (inner.members != 2)
-      throw Fault{"the CSG operation `" + word + "` needs exactly two objects and has " +
-                      std::to_string(inner.members),
-                  place};
+    if (inner.members < 2)
+      throw Fault{
+          "the CSG operation `" + word + "` needs two objects and has " + std::to_string(inner.members),
+          place};
+    // differs from rayshade4: which crashes.
+    if (inner.members > 2)
+      log_.warn(place, "the CSG operation `" + word + "` has " + std::to_string(inner.members) +
+                           " objects, in Rayshade 4 it has two" +
+                           (opening == Word::difference ? ": all others are taken from the first" : ""));
     const CsgOperation operation = opening == Word::unite       ? CsgOperation::unite
                                    : opening == Word::intersect ? CsgOperation::intersect
                                                                 : CsgOperation::subtract;

@@ -45,7 +45,7 @@ struct Instance {
 
 enum class CsgOperation : std::uint8_t { unite, intersect, subtract };
 
-// A CSG node: its definition holds exactly two objects, the operands in the order of the file.
+// A CSG node: its definition holds the operands, two or more, in the order of the file.
 struct Csg {
   CsgOperation operation = CsgOperation::unite;
   DefinitionId operands = kWorld;

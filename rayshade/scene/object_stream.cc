@@ -24,10 +24,14 @@ void readItems(Spool& spool, std::uint64_t begin, std::uint64_t end,
 
 // Where a chain of nodes, innermost first, takes a point at a moment.  Multiplied from the outside in, like the maps of
 // a SceneStore: the product of the same matrices in another order of brackets has other last bits.
-Affine composed(const std::vector<const NodeItem*>& chain, const Moment& moment) {
+std::optional<Affine> composed(const std::vector<const NodeItem*>& chain, const Moment& moment) {
   Affine map;
-  for (auto f = chain.rbegin(); f != chain.rend(); ++f)
-    map = then(chainAt((*f)->node.transforms, moment), map);
+  for (auto f = chain.rbegin(); f != chain.rend(); ++f) {
+    const std::optional<Affine> own = chainAt((*f)->node.transforms, moment);
+    if (!own) return std::nullopt;
+    map = then(*own, map);
+    if (!isInvertible(map)) return std::nullopt;
+  }
   return map;
 }
 

@@ -16,6 +16,24 @@ std::size_t bytesOf(const Vectors& vectors) {
       vectors);
 }
 
+// The image of a box, padded: so that whoever meets its content by the inverse map, which may be a little off, meets it inside.
+Bounds paddedImage(const Affine& map, const Bounds& own) {
+  const Bounds image = mapBounds(map, own), usual = padded(image);
+  if (image.empty() || !own.finite()) return usual;
+  const Vec3 reach{std::max(std::abs(own.low.x), std::abs(own.high.x)),
+                   std::max(std::abs(own.low.y), std::abs(own.high.y)),
+                   std::max(std::abs(own.low.z), std::abs(own.high.z))};
+  Matrix missed = product(map.forward, map.inverse);  // minus the identity: what out and in again misses by
+  missed.x.x -= 1;
+  missed.y.y -= 1;
+  missed.z.z -= 1;
+  const Matrix out = absolute(map.forward), in = absolute(map.inverse);
+  const Vec3 outside = mapPoint(out, reach);
+  const Vec3 inside = mapPoint(absolute(missed), reach) + 2 * kRounding * mapPoint(in, outside);
+  const Vec3 margin = 2 * mapVector(out, inside);
+  return join(usual, {image.low - margin, image.high + margin});
+}
+
 }  // namespace
 
 void StoredSurfaces::add(SurfaceId id, const Surface& surface) {
@@ -74,8 +92,13 @@ std::size_t StoredNodes::place(PlacedNode& node) {
     PlacedNode& f = *pending.back();
     const PlacedNode& parent = nodes_[f.parent];
     f.moves = parent.moves || f.node.transforms.moves();
-    if (!f.moves) f.toContainer = then(chainAt(f.node.transforms, {}), parent.toContainer);
-    f.identity = !f.moves && isIdentity(f.toContainer);
+    if (!f.moves) {
+      const std::optional<Affine> own = chainAt(f.node.transforms, {});
+      if (own) f.toContainer = then(*own, parent.toContainer);
+      f.nowhere = parent.nowhere || !own || !isInvertible(f.toContainer);
+      mended += f.nowhere && !parent.nowhere;
+    }
+    f.identity = !f.moves && !f.nowhere && isIdentity(f.toContainer);
     f.textured = parent.textured || !f.node.textures.empty();
   }
   return mended;
@@ -150,11 +173,13 @@ std::size_t SceneStore::bytes() const {
   return total;
 }
 
-Bounds placedBounds(const Bounds& own, bool moves, const std::function<Affine(const Moment&)>& mapAtMoment,
+Bounds placedBounds(const Bounds& own, bool moves,
+                    const std::function<std::optional<Affine>(const Moment&)>& mapAtMoment,
                     const Exposure& exposure) {
   if (!moves) {
-    const Affine map = mapAtMoment({});
-    return padded(isIdentity(map) ? own : mapBounds(map, own));
+    const std::optional<Affine> map = mapAtMoment({});
+    if (!map) return {};
+    return isIdentity(*map) ? padded(own) : paddedImage(*map, own);
   }
   // The union over many moments, enlarged by the largest step between two of them, so that what happens in between
   // stays inside.  differs from rayshade4: which takes moments by chance and may clip.
@@ -163,7 +188,8 @@ Bounds placedBounds(const Bounds& own, bool moves, const std::function<Affine(co
   double step = 0;
   for (int i = 0; i <= kMoments; ++i) {
     const double time = exposure.opens + (exposure.closes - exposure.opens) * i / kMoments;
-    const Bounds now = mapBounds(mapAtMoment({time, exposure.frame}), own);
+    const std::optional<Affine> map = mapAtMoment({time, exposure.frame});
+    const Bounds now = map ? paddedImage(*map, own) : Bounds{};
     if (i > 0 && now.finite() && previous.finite())
       step = std::max({step, maxAbs(now.low - previous.low), maxAbs(now.high - previous.high)});
     all = join(all, now);
@@ -174,10 +200,15 @@ Bounds placedBounds(const Bounds& own, bool moves, const std::function<Affine(co
   return padded({all.low - margin, all.high + margin});
 }
 
-Affine mapAt(const SceneStore& store, NodeIndex index, const Moment& moment) {
+std::optional<Affine> mapAt(const SceneStore& store, NodeIndex index, const Moment& moment) {
   const PlacedNode& node = store.node(index);
+  if (node.nowhere) return std::nullopt;
   if (!node.moves) return node.toContainer;
-  return then(chainAt(node.node.transforms, moment), mapAt(store, node.parent, moment));
+  const std::optional<Affine> own = chainAt(node.node.transforms, moment);
+  const std::optional<Affine> outer = mapAt(store, node.parent, moment);
+  if (!own || !outer) return std::nullopt;
+  const Affine map = then(*own, *outer);
+  return isInvertible(map) ? std::optional(map) : std::nullopt;
 }
 
 }  // namespace rayshade

@@ -25,6 +25,7 @@ inline constexpr std::uint32_t kNone = 0xffffffffu;
 enum class BodyKind : std::uint8_t {};
 inline constexpr BodyKind kInstanceKind{AllShapes::size};
 inline constexpr BodyKind kCsgKind{AllShapes::size + 1};
+inline bool refersToDefinition(BodyKind kind) { return kind == kInstanceKind || kind == kCsgKind; }
 
 struct PlacedObject {
   ObjectId id{};
@@ -40,6 +41,7 @@ struct PlacedNode {
   Affine toContainer;     // when nothing on the way moves
   bool moves = false;     // something on the way to the container does
   bool identity = true;   // toContainer is the identity
+  bool nowhere = false;   // toContainer has no inverse: there is nothing inside
   bool textured = false;  // this node or one further out has textures
   SceneNode node;         // as written
 };
@@ -116,6 +118,7 @@ class SceneStore : public SceneSink {
   const Csg& csg(const PlacedObject& object) const { return csgs_[object.body]; }
   const Instance& instance(std::uint32_t body) const { return instances_[body]; }
   const Csg& csg(std::uint32_t body) const { return csgs_[body]; }
+  std::size_t csgCount() const { return csgs_.size(); }
 
   // Is any surface of the scene transparent in shadows (before textures, as rayshade has it)?
   bool anyTransparent() const { return surfaces_.anyTransparent(); }
@@ -149,12 +152,13 @@ struct Exposure {
   std::int32_t frame = 0;
 };
 
-// The extent of something in the space of its container, padded: `own` mapped by what `mapAtMoment` says; when it
-// moves, an extent that holds it at all moments of the exposure.  Host and tasks decide by it alike where an object goes.
-Bounds placedBounds(const Bounds& own, bool moves, const std::function<Affine(const Moment&)>& mapAtMoment,
+// The extent of something in the space of its container, padded: `own` mapped by what `mapAtMoment` says (nothing: it is not there
+// then); when it moves, an extent that holds it at all moments of the exposure.  Host and tasks decide by it alike where an object goes.
+Bounds placedBounds(const Bounds& own, bool moves,
+                    const std::function<std::optional<Affine>(const Moment&)>& mapAtMoment,
                     const Exposure& exposure);
 
-// The map from a node to the space of its container at a moment.
-Affine mapAt(const SceneStore& store, NodeIndex node, const Moment& moment);
+// The map from a node to the space of its container at a moment; nothing if it has no inverse then.
+std::optional<Affine> mapAt(const SceneStore& store, NodeIndex node, const Moment& moment);
 
 }  // namespace rayshade

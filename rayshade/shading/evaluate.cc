@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rayshade/shading/evaluate.h"
 
+#include "rayshade/intersect/placing.h"
 #include "rayshade/intersect/ray_hit.h"
 #include "rayshade/textures/apply.h"
 
@@ -28,7 +29,7 @@ class Climb {
   void through(const SceneStore& store, NodeIndex index, const OfPrimitive& ofPrimitive) {
     for (; index != 0; index = store.node(index).parent) {
       const SceneNode& node = store.node(index).node;
-      const Affine own = chainAt(node.transforms, moment_);
+      const Affine own = chainAt(node.transforms, moment_).value_or(Affine{});
       place_.object = then(place_.object, own);
       place_.position = mapPoint(own.forward, place_.position);
       place_.rayOrigin = mapPoint(own.forward, place_.rayOrigin);
@@ -36,7 +37,7 @@ class Climb {
       if (!node.transforms.empty()) hit_.normal = normalize(mapNormal(own.inverse, hit_.normal));
       place_.geometricNormal = shapeNormal_;
       for (const PlacedTexture& placed : node.textures) {
-        place_.texture = chainAt(placed.transforms, moment_);
+        place_.texture = chainAt(placed.transforms, moment_).value_or(Affine{});
         applyTexture(placed.texture, hit_, place_, ofPrimitive);
       }
     }
@@ -79,8 +80,7 @@ SurfacePoint evaluateSurface(const Model& model, const Hit& hit, const Ray& ray,
   const SceneStore& store = model.store();
   const PlacedObject& object = store.object(hit.object);
   const PlacedNode& node = store.node(object.node);
-  const bool shape = object.kind != kInstanceKind && object.kind != kCsgKind;
-  if (!shape || !node.identity || node.textured)
+  if (refersToDefinition(object.kind) || !node.identity || node.textured)
     return evaluateSurface(model, hit, pathTo(model, ray, hit), ray, settings);
   // The ordinary case, a shape of the world as it is: the same answers as below without a path.
   const LocalRay local{ray.origin, ray.direction, 1};
@@ -99,29 +99,22 @@ SurfacePoint evaluateSurface(const Model& model, const Hit& hit, const Ray& ray,
 SurfacePoint evaluateSurface(const Model& model, const Hit& hit, const HitPath& path, const Ray& ray,
                              const SceneSettings& settings) {
   const SceneStore& store = model.store();
-  const PathStep& last = path.steps[path.steps.size() - 1];
-  ShapePoint shapePoint = withShape(store, store.object(last.object), [&](const auto& shape) {
-    return shape.pointAt(last.ray, rootAt(model, last, hit.t));
-  });
+  const PathStep& last = path.steps.back();
+  PlacedPoint placed = placedPoint(model, path, ray, hit.t);
+  ShapePoint& shapePoint = placed.shape;
 
   SurfacePoint at;
   at.smooth = shapePoint.normal != shapePoint.geometricNormal;
-  const bool entering = turnToViewer(shapePoint, last.ray.direction);
-  at.entering = path.entering.value_or(entering);
-
-  // Up to the world.
-  bool textured = false, placed = false;  // placed: in a space other than the world
-  Affine toWorld;
-  for (std::size_t i = path.steps.size(); i-- > 0;) {
-    const NodeIndex node = store.object(path.steps[i].object).node;
-    textured = textured || store.node(node).textured;
-    if (store.node(node).identity) continue;
-    placed = true;
-    toWorld = then(toWorld, mapAt(store, node, ray.moment));
-  }
-  placed = placed && !isIdentity(toWorld);
+  const bool outside = turnToViewer(shapePoint, last.ray.direction);
+  at.entering = path.entering.value_or(outside);
   at.surface = boundSurface(model, path);
-  at.normal = placed ? normalize(mapNormal(toWorld.inverse, shapePoint.normal)) : shapePoint.normal;
+  const auto toWorld = [&](Vec3 normal) {
+    return placed.placed ? normalize(mapNormal(placed.toWorld.inverse, normal)) : normal;
+  };
+  at.normal = toWorld(shapePoint.normal);
+  bool textured = false;
+  for (const PathStep& step : path.steps)
+    textured = textured || store.node(store.object(step.object).node).textured;
   if (textured) {
     Climb climb(ray, last, shapePoint, at.surface, settings.samplesPerSide);
     const auto ofPrimitive = [&](Vec3 position) {
@@ -133,19 +126,9 @@ SurfacePoint evaluateSurface(const Model& model, const Hit& hit, const HitPath& 
     at.surface = climb.hit().surface;
     at.normal = climb.hit().normal;
   }
-  if (!placed) {
-    at.position = shapePoint.position;
-    at.geometricNormal = shapePoint.geometricNormal;
-    at.error = shapePoint.error + kRounding * maxAbs(at.position);
-  } else {
-    at.position = mapPoint(toWorld.forward, shapePoint.position);
-    at.geometricNormal = normalize(mapNormal(toWorld.inverse, shapePoint.geometricNormal));
-    // The point's own error, that of mapping it out, and that of mapping a ray that starts there in again.
-    const double out = stretch(toWorld.forward), in = stretch(toWorld.inverse);
-    at.error = out * shapePoint.error +
-               kRounding * (out * maxAbs(shapePoint.position) + maxAbs(toWorld.forward.origin) +
-                            out * in * maxAbs(at.position) + out * maxAbs(toWorld.inverse.origin));
-  }
+  at.position = placed.position;
+  at.geometricNormal = toWorld(shapePoint.geometricNormal);
+  at.error = placed.error;
   return at;
 }
 

@@ -7,12 +7,13 @@ namespace rayshade {
 
 ShadowRay shadowRay(const Ray& ray, const SurfacePoint& at, const LightSample& sample) {
   ShadowRay shadow;
-  shadow.ray.origin = originOff(at, sample.shadowToward);
-  shadow.ray.direction = sample.shadowToward;
+  const ShadowLine line = shadowLine(at, sample);
+  shadow.ray.origin = line.origin;
+  shadow.ray.direction = line.direction;
   shadow.ray.moment = ray.moment;
   shadow.ray.sample = ray.sample;
   shadow.ray.key = ray.key;
-  shadow.distance = sample.shadowDistance;
+  shadow.distance = line.distance;
   return shadow;
 }
 

@@ -21,6 +21,22 @@ struct ShadowRay {
   bool inside = false;
 };
 
+// From a hit to a point of a light: off the surface.
+struct ShadowLine {
+  Vec3 origin, direction;  // unit
+  double distance = 0;
+};
+inline ShadowLine shadowLine(const SurfacePoint& at, const LightSample& sample) {
+  ShadowLine line{originOff(at, sample.shadowToward), sample.shadowToward, sample.shadowDistance};
+  // Where the step off the surface is more than the roundings of any coordinate are, the light is aimed at anew.
+  if (at.error > 2 * kRounding * maxAbs(at.position) && line.distance < kInfinity) {
+    const Vec3 way = at.position + line.distance * line.direction - line.origin;
+    line.direction = normalize(way);
+    line.distance = length(way);
+  }
+  return line;
+}
+
 // The shadow ray of a hit to a point of a light that is seen as `sample` from there.
 ShadowRay shadowRay(const Ray& ray, const SurfacePoint& at, const LightSample& sample);
 

@@ -229,7 +229,7 @@ ShapePoint Blob::pointAt(const LocalRay& ray, double t) const {
   }
   Vec3 outward = normalize(-field.gradient);
   if (outward == Vec3{}) outward = -ray.direction;  // the top of a ball that just reaches the threshold
-  return {p, outward, outward, {}, distanceToSkin(field)};
+  return {p, outward, outward, {}, distanceToSkin(field), kInfinity};
 }
 
 }  // namespace rayshade

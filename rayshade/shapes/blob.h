@@ -31,7 +31,7 @@ struct Blob {
 
   static constexpr std::string_view keyword = "blob";
   static constexpr Aliases<> aliases{};
-  static constexpr bool flat = false, unbounded = false;
+  static constexpr bool flat = false, unbounded = false, solid = true;
   static constexpr std::string_view examples[] = {"0.5  1 1  0 0 0", "0.45  1 0.9 -0.5 0 0  1 0.9 0.4 0 0",
                                                   "0.3  1 0.8 0 0 0  1 0.8 0.5 0 0.1  0.8 0.6 0.2 0.5 1e-3"};
 

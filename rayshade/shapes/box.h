@@ -19,7 +19,7 @@ struct Box {
 
   static constexpr std::string_view keyword = "box";
   static constexpr Aliases<> aliases{};
-  static constexpr bool flat = false, unbounded = false;
+  static constexpr bool flat = false, unbounded = false, solid = true, convex = true;
   static constexpr std::string_view examples[] = {"-1 -1 -1  1 1 1", "3 2 1  0 -1e-4 0"};
 
   static std::optional<Box> parse(Arguments& in) {

@@ -19,7 +19,7 @@ struct Disc {
 
   static constexpr std::string_view keyword = "disc";
   static constexpr Aliases<> aliases{};
-  static constexpr bool flat = true, unbounded = false;
+  static constexpr bool flat = true, unbounded = false, solid = false;
   static constexpr std::string_view examples[] = {"1  0 0 0  0 0 1", "1e-4  5 -6 7  1 -1 2"};
 
   static std::optional<Disc> parse(Arguments& in) {

@@ -127,7 +127,12 @@ ShapePoint Frustum::pointAt(const LocalRay& ray, double t) const {
     normal = widening > 0 ? -axis : outward;
   }
   const Vec3 position = base + (along * length) * axis + (radius + along * widening) * outward;
-  return {position, normal, normal, {}, kRounding * (maxAbs(base) + length + endRadius)};
+  return {position,
+          normal,
+          normal,
+          {},
+          kRounding * (maxAbs(base) + length + endRadius),
+          radius == endRadius ? 1 / radius : kInfinity};
 }
 
 SurfaceCoordinates Frustum::coordinates(Vec3 position) const {

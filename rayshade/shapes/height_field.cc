@@ -265,7 +265,7 @@ ShapePoint HeightField::pointAt(const LocalRay& ray, double t) const {
   const auto& [wa, wb, wc] = search.best.weights;
   const Vec3 normal = normalize(cross(b - a, c - a));
   const double error = kRounding * (maxAbs(a) + maxAbs(b) + maxAbs(c));
-  return {wa * a + wb * b + wc * c, normal, normal, {}, error};
+  return {wa * a + wb * b + wc * c, normal, normal, {}, error, kInfinity};
 }
 
 SurfaceCoordinates HeightField::coordinates(const ShapePoint& at, Vec3 position) const {

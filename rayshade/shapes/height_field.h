@@ -37,7 +37,7 @@ struct HeightField {
 
   static constexpr std::string_view keyword = "heightfield";
   static constexpr Aliases<> aliases{};
-  static constexpr bool flat = false, unbounded = false, beginsWithFile = true;
+  static constexpr bool flat = false, unbounded = false, solid = false, beginsWithFile = true;
   static constexpr std::string_view examples[] = {"tests/support/hills.hf"};
 
   static std::optional<HeightField> parse(Arguments& in);

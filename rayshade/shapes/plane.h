@@ -31,7 +31,7 @@ struct Plane {
 
   static constexpr std::string_view keyword = "plane";
   static constexpr Aliases<> aliases{};
-  static constexpr bool flat = false, unbounded = true;
+  static constexpr bool flat = false, unbounded = true, solid = true;
   static constexpr std::string_view examples[] = {"0 0 0  0 0 1", "1 -2 3e4  1 2 -0.5"};
 
   static std::optional<Plane> parse(Arguments& in) {
@@ -56,6 +56,8 @@ struct Plane {
   ShapePoint pointAt(const LocalRay& ray, double t) const {
     return ontoPlane(ray.origin + t * ray.direction, point, normal);
   }
+
+  bool inside(Vec3 p) const { return dot(p - point, normal) < 0; }
 
   // Distances from the point along two axes in the plane, the first of them level.  They go with the normal
   // of the hit, which looks at the viewer: seen from the back they mirror.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rayshade/shapes/polygon.h"
 
+#include <cstdio>
+
 #include "rayshade/shapes/plane.h"
 #include "rayshade/shapes/shear.h"
 
@@ -63,6 +65,12 @@ double insideExtent(const Bounds& extent, const LocalRay& ray, double t) {
   return std::min(std::max(t, entry), exit);
 }
 
+std::string shortText(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2g", x);
+  return text;
+}
+
 }  // namespace
 
 std::optional<Polygon> Polygon::parse(Arguments& in) {
@@ -72,20 +80,21 @@ std::optional<Polygon> Polygon::parse(Arguments& in) {
   if (polygon.corners.size() < 3) in.fail("a polygon has three corners or more");
   for (const Vec3& corner : polygon.corners)
     if (!(maxAbs(corner) < 0x1p+500)) return std::nullopt;
-  polygon.prepare();
-  const double size = maxAbs(polygon.extent.size());
+  Bounds corners;
+  for (const Vec3& corner : polygon.corners) corners = join(corners, corner);
+  const double size = maxAbs(corners.size());
   if (!(size > 0x1p-480)) return std::nullopt;
   const Vec3 sum = newell(polygon.corners, size);
   // differs from rayshade4: a polygon may be as small as you like; only one whose area is rounding is not one.
   if (!(length(sum) > kRounding * static_cast<double>(polygon.corners.size()))) return std::nullopt;
   polygon.normal = normalize(sum);
-  constexpr double kBend = 1e-4;  // more than decimals in a file explain
-  for (const Vec3& corner : polygon.corners) {
-    if (std::abs(dot(corner - polygon.corners[0], polygon.normal)) <= kBend * size) continue;
-    in.warn("the corners of this polygon are not in one plane");
-    polygon.bent = true;
-    break;
-  }
+  double off = 0;  // the farthest corner from the plane
+  for (const Vec3& corner : polygon.corners)
+    off = std::max(off, std::abs(dot(corner - polygon.corners[0], polygon.normal)));
+  constexpr double kToSay = 1e-10, kBend = 1e-4;  // more than decimals in a file explain
+  polygon.bent = off > kBend * size;
+  if (off > kToSay * size)
+    in.warn("the corners of this polygon are not in one plane, but up to " + shortText(off) + " out of it");
   polygon.prepare();
   return polygon;
 }
@@ -96,8 +105,9 @@ double Polygon::intersect(const LocalRay& ray, double tMin) const {
   if (!(bent ? windsAround(corners, dropAxis(ray.origin + t * ray.direction, dominantAxis(normal)))
              : inside(ray, t)))
     return kNoHit;
+  // The plane decides whether it is before the ray: only what is there may be moved, or a surface would meet rays that leave it.
   const double clipped = insideExtent(extent, ray, t);
-  return clipped > tMin ? clipped : kNoHit;
+  return t > 0 && clipped > tMin ? clipped : kNoHit;
 }
 
 bool Polygon::inside(const LocalRay& ray, double t) const {
@@ -108,7 +118,12 @@ bool Polygon::inside(const LocalRay& ray, double t) const {
 
 void Polygon::prepare() {
   extent = {};
-  for (const Vec3& corner : corners) extent = join(extent, corner);
+  const int axis = dominantAxis(normal);
+  for (Vec3 corner : corners) {
+    extent = join(extent, corner);
+    corner[axis] -= dot(corner - corners[0], normal) / normal[axis];  // its place in the plane
+    extent = join(extent, corner);
+  }
   constexpr std::size_t kMany = 9;  // with fewer corners the exact test is as fast
   if (corners.size() >= kMany && !bent) outline = std::make_shared<const Outline>(corners, normal);
 }

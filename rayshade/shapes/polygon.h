@@ -5,8 +5,8 @@
 // The plane goes through p1 with Newell's normal; the front is the side from which the corners run
 // counter-clockwise.  The ray is inside when the outline, seen along the ray (shear.h), winds around it a
 // number of times that is not zero, or passes through it exactly; so polygons that share an edge do not leak.
-// t is that of the plane, but not beyond the extent of the corners: that matters when the corners are not
-// quite in a plane and the ray grazes it.  When they are visibly not in a plane, corners and hit are projected
+// t is that of the plane, but not beyond the extent of the corners and their places in the plane: that matters
+// when the corners are not quite in a plane and the ray grazes it.  When they are visibly not in a plane, corners and hit are projected
 // along the largest component of the normal, as rayshade does, because that is how such pictures look.
 // Source: Newell's method as in Sutherland, Sproull & Schumacker, 1974; winding number: Sunday, 2001.
 // SPDX-License-Identifier: BSD-3-Clause
@@ -30,7 +30,7 @@ struct Polygon {
 
   static constexpr std::string_view keyword = "polygon";
   static constexpr Aliases<1> aliases{"poly"};
-  static constexpr bool flat = true, unbounded = false;
+  static constexpr bool flat = true, unbounded = false, solid = false;
   static constexpr std::string_view examples[] = {"0 0 0  1 0 0  0 1 0", "0 0 1  4 0 1  4 4 1  2 1 1  0 4 1"};
 
   static std::optional<Polygon> parse(Arguments& in);

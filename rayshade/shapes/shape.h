@@ -9,6 +9,7 @@
 //   aliases      other words for the same
 //   flat         of two hits at the same t, one of a flat shape is taken, the first one defined
 //   unbounded    at the same t, after flat ones, before all others, the first one defined
+//   solid        encloses what is inside by itself (a plane: half of space), as an operand of CSG
 //   examples     what may follow the keyword (after the optional surface).  Tests render them, change their numbers
 //                at random, and ask of what comes out all that is said here
 //   parse        reads the arguments; nothing when the shape is degenerate (the parser warns and drops it)
@@ -24,6 +25,8 @@
 //
 // If it has them:
 //
+//   convex           true: a ray is inside between its first root, from minus infinity on, and its second one, if it has two
+//   inside           of a point, if solid and unbounded: a ray need not cross such a shape to be inside of it
 //   flipped          the same with its normals turned around, for option -f
 //   beginsWithFile   true: the first argument is the name of a file, which the parser has to tell from that of a
 //                    surface; it never takes what `applysurf` has set
@@ -55,6 +58,8 @@ struct ShapePoint {
                          // reference
   Vec3 local;            // what coordinates() wants to know again: barycentrics, a face, ...
   double error = 0;      // the true surface is at most this far from `position`           [object units]
+  double curvature =
+      0;  // of the surface around it, at most; infinite: it may have edges       [1/object units]
 };
 
 struct SurfaceCoordinates {
@@ -75,6 +80,7 @@ concept Shape = Serializable<S> &&
   { S::aliases } -> std::convertible_to<std::span<const std::string_view>>;
   { S::flat } -> std::convertible_to<bool>;
   { S::unbounded } -> std::convertible_to<bool>;
+  { S::solid } -> std::convertible_to<bool>;
   { S::parse(arguments) } -> std::same_as<std::optional<S>>;
   { shape.bounds() } -> std::same_as<Bounds>;
   { shape.intersect(ray, t) } -> std::same_as<double>;
@@ -83,6 +89,10 @@ concept Shape = Serializable<S> &&
   S::examples[0];
 };
 
+template <class S>
+concept Convex = requires {
+  requires S::convex;
+};
 template <class S>
 concept BeginsWithFile = requires {
   requires S::beginsWithFile;

@@ -22,7 +22,7 @@ struct Sphere {
 
   static constexpr std::string_view keyword = "sphere";
   static constexpr Aliases<> aliases{};
-  static constexpr bool flat = false, unbounded = false;
+  static constexpr bool flat = false, unbounded = false, solid = true, convex = true;
   static constexpr std::string_view examples[] = {"1  0 0 0", "0.001  -5 1e3 7"};
 
   static std::optional<Sphere> parse(Arguments& in) {
@@ -55,7 +55,7 @@ struct Sphere {
   ShapePoint pointAt(const LocalRay& ray, double t) const {
     const Vec3 normal = normalize(ray.origin + t * ray.direction - centre);
     const Vec3 position = centre + radius * normal;
-    return {position, normal, normal, {}, kRounding * (maxAbs(centre) + radius)};
+    return {position, normal, normal, {}, kRounding * (maxAbs(centre) + radius), 1 / radius};
   }
 
   // v from the -z pole to the +z pole, u around z from the +x axis.

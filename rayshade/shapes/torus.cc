@@ -144,7 +144,8 @@ ShapePoint Torus::pointAt(const LocalRay& ray, double t) const {
           normal,
           normal,
           {},
-          2 * kRounding * (maxAbs(centre) + swept + tube)};
+          2 * kRounding * (maxAbs(centre) + swept + tube),
+          1 / std::min(tube, std::abs(swept - tube))};
 }
 
 // u around the axis, v around the tube, 0 where the tube is nearest to the axis.

@@ -26,7 +26,7 @@ struct Torus {
 
   static constexpr std::string_view keyword = "torus";
   static constexpr Aliases<> aliases{};
-  static constexpr bool flat = false, unbounded = false;
+  static constexpr bool flat = false, unbounded = false, solid = true;
   static constexpr std::string_view examples[] = {"1 0.25  0 0 0  0 0 1", "0.5 0.001  7 -5 1e3  1 -2 0.4",
                                                   "0.6 1  0 1 0  0 0 -3"};
 

@@ -62,7 +62,7 @@ struct Triangle {
 
   static constexpr std::string_view keyword = "triangle";
   static constexpr Aliases<> aliases{};
-  static constexpr bool flat = true, unbounded = false;
+  static constexpr bool flat = true, unbounded = false, solid = false;
   static constexpr std::string_view examples[] = {"0 0 0  1 0 0  0 1 0", "3 -4 5  1e3 0 0.5  2 2 -7"};
 
   static std::optional<Triangle> parse(Arguments& in);  // flat
@@ -102,7 +102,7 @@ struct PhongTriangle {
   using SharesKeywordOf = Triangle;
   static constexpr std::string_view keyword = Triangle::keyword;
   static constexpr Aliases<> aliases{};
-  static constexpr bool flat = true, unbounded = false;
+  static constexpr bool flat = true, unbounded = false, solid = false;
   static constexpr std::string_view examples[] = {"0 0 0  0 0 1  1 0 0  1 0 1  0 1 0  0 1 1",
                                                   "3 -4 5  0 1 0  1e3 0 0.5  -1 1 0  2 2 -7  0 0 2"};
 

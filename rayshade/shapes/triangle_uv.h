@@ -20,7 +20,7 @@ struct TriangleUv {
 
   static constexpr std::string_view keyword = "triangleuv";
   static constexpr Aliases<> aliases{};
-  static constexpr bool flat = true, unbounded = false;
+  static constexpr bool flat = true, unbounded = false, solid = false;
   static constexpr std::string_view examples[] = {
       "0 0 0  0 0 1  0 0   1 0 0  1 0 1  1 0   0 1 0  0 1 1  0 1",
       "3 -4 5  0 1 0  0.5 0.5   1e3 0 0.5  -1 1 0  2 -1   2 2 -7  0 0 2  0.25 8"};

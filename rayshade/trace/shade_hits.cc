@@ -29,9 +29,8 @@ void traceLightPoint(LocalSpace& space, std::span<ShadedHit> shaded, const Scene
   for (std::size_t i = 0; i < shaded.size(); ++i) {
     room.through[i] = kWhite;
     if (room.visibility[i] != LightVisibility::traced) continue;
-    const LightSample& sample = room.samples[i];
-    room.segments[count] = {originOff(shaded[i].point, sample.shadowToward), sample.shadowToward,
-                            sample.shadowDistance, shaded[i].ray->moment};
+    const ShadowLine line = shadowLine(shaded[i].point, room.samples[i]);
+    room.segments[count] = {line.origin, line.direction, line.distance, shaded[i].ray->moment};
     room.arriving[count] = kWhite;
     room.from[count++] = i;
   }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rayshade/trace/trace_shadows.h"
 
+#include "rayshade/intersect/placing.h"
+
 namespace rayshade::trace_detail {
 
 void filterShadows(LocalSpace& space, std::vector<OpenShadow>& open, const SceneSettings& settings,
@@ -21,6 +23,10 @@ void filterShadows(LocalSpace& space, std::vector<OpenShadow>& open, const Scene
     std::size_t left = 0;
     for (std::size_t i = 0; i < count; ++i) {
       if (!hits[i].found()) continue;
+      const ShadowRay& shadow = going[i]->shadow;
+      if (hits[i].t >= sureUntil(shadow.ray.origin, shadow.distance) &&
+          endsIn(*models[i], shadow.ray, hits[i], shadow.distance))
+        continue;
       if (passSurface(*models[i], hits[i], going[i]->shadow, settings)) {
         going[left++] = going[i];
       } else {

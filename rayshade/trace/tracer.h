@@ -1,5 +1,8 @@
-// The sequential tracer: the core connected by recursion.  What it sees is the specification that every other way of running must
-// repeat bit for bit; tasks connect the same functions by messages (pvm/trace, pvm/shade).
+// The sequential tracer: the core connected by a stack of what waits.  What it sees is the specification that every other way of
+// running must repeat bit for bit; tasks connect the same functions by messages (pvm/trace, pvm/shade).
+//
+// A bundle of rays is traced, its hits are shaded, and while their transmitted and then their reflected rays are traced, the hits
+// wait on a level of their own.  Levels lie in memory, not on the program's stack: how deep rays may go is up to `maxdepth` alone.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -16,19 +19,21 @@ class Tracer {
   ~Tracer();
 
   // What each of at most kBundleSize rays sees.
-  void trace(std::span<const Ray> rays, std::span<Color> seen) { trace(rays, seen, 0); }
+  void trace(std::span<const Ray> rays, std::span<Color> seen);
 
  private:
-  struct Stage;
-  void trace(std::span<const Ray> rays, std::span<Color> seen, std::size_t depth);
+  struct Level;
+  Level& level(std::size_t depth);
+  void shade(std::span<const Ray> rays, std::span<Color* const> goals, Level& level);
 
   LocalSpace& space_;
   const SceneSettings& settings_;
   TraceCounts& counts_;
-  FoundHits found_;  // of the bundle that is traced now
+  FoundHits found_;  // of the bundle that is traced now, as all that follows
+  std::array<RayHit, kBundleSize> hits_;
+  std::array<ShadedHit, kBundleSize> shaded_;
   ShadingRoom room_;
-  std::vector<std::unique_ptr<Stage>>
-      stages_;  // by depth of the recursion; kept, so that no ray takes memory
+  std::vector<std::unique_ptr<Level>> levels_;  // kept, so that no ray takes memory
 };
 
 }  // namespace rayshade

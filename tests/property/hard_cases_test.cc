@@ -104,6 +104,28 @@ TEST(HardCase, AnOccluderCountsIfItIsNearerThanTheLight) {
   EXPECT_EQ(colorSeen("3 0 3", "0 0 0", scene + text(4 - 1e-13) + "0 0 1").r, 0);
 }
 
+TEST(HardCase, WhatShrinksToNothingIsGoneAndComesBack) {
+  const auto seenAt = [](double time) {
+    return colorSeen("0 0 5", "0 0 0.1",
+                     "up 0 1 0 starttime" + text(time) +
+                         "light 1 ambient surface s ambient 1 1 1 sphere s 1 0 0 0 scale (1 - time) "
+                         "(1 - time) (1 - time)")
+        .r;
+  };
+  EXPECT_EQ(seenAt(0.5), 1);
+  EXPECT_EQ(seenAt(1), 0);
+  EXPECT_EQ(seenAt(1.5), 1);
+}
+
+TEST(HardCase, AHallOfMirrorsIsAsDeepAsMemory) {
+  const Job job = jobOfText(
+      "screen 4 3 sample 1 nojitter eyep 0 -10 2 lookp 0 0 0 maxdepth 100000 light 1 ambient "
+      "surface m ambient 1e-5 1e-5 1e-5 specular 1 1 1 reflect 1 sphere m 100 0 0 0 sphere m 1 0 3 0");
+  const Rendered r = renderSequentially(job);
+  EXPECT_GT(r.counts.reflectedRays, 1000000u);
+  for (const float p : r.frames.at(0).pixels) EXPECT_NEAR(p, 1, 0.01);
+}
+
 TEST(HardCase, APointOnTheLightIsANumber) {
   const Rendered r = renderSequentially(
       jobOfText("screen 9 9 sample 1 nojitter eyep 0 0 5 lookp 0 0 0 up 0 1 0 fov 5 light 1 point 0 0 0 "

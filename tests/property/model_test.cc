@@ -106,7 +106,7 @@ double bruteForce(const Model& model, ObjectIndex index, const LocalRay& outer, 
       nearest = std::min(nearest, bruteForce(model, member, ray, tMin));
     return nearest;
   }
-  if (object.kind == kCsgKind) return csgCrossing(model, store.csg(object), ray, {}, tMin).t;
+  if (object.kind == kCsgKind) return firstCrossing(model, model.solid(object.body), ray, {}, tMin).t;
   return withShape(store, object, [&](const auto& shape) {
     double t = shape.intersect(ray, tMin * ray.scale * (1 - 0x1p-50));
     while (t < kNoHit && t / ray.scale <= tMin) t = shape.intersect(ray, t);

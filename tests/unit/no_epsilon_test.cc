@@ -36,6 +36,7 @@ constexpr Known kKnown[] = {
     {"rayshade/scene/camera.cc", "1e-5", "sine of the angle between the line of sight and up"},
     {"rayshade/scene/settings.h", "0.002", "cutoff, a colour"},
     {"rayshade/language/viewing.cc", "1e-5", "sine of the angle between the line of sight and up"},
+    {"rayshade/shapes/polygon.cc", "1e-10", "bend that is said, multiplied with the size"},
     {"rayshade/shapes/polygon.cc", "1e-4", "bend, multiplied with the size"},
     {"rayshade/shapes/sphere.h", "1e-5", "v near a pole, a share of a turn"},
     {"rayshade/space/clip_list.cc", "1e-12", "multiplied with the coordinates"},

@@ -161,8 +161,8 @@ TEST(Parser, DissolvesListsAndGrids) {
   const SceneNode& list = s->items.nodes.at(number(grid.parent));
   EXPECT_EQ(list.parent, kRootNode);
   EXPECT_EQ(s->items.objects[0].node, grid.parent);
-  EXPECT_EQ(mapPoint(chainAt(own.transforms, {}).forward, {1, 0, 0}), (Vec3{2, 0, 0}));
-  EXPECT_EQ(mapPoint(chainAt(grid.transforms, {}).forward, {1, 0, 0}), (Vec3{2, 0, 0}));
+  EXPECT_EQ(mapPoint(chainAt(own.transforms, {})->forward, {1, 0, 0}), (Vec3{2, 0, 0}));
+  EXPECT_EQ(mapPoint(chainAt(grid.transforms, {})->forward, {1, 0, 0}), (Vec3{2, 0, 0}));
   EXPECT_LT(list.parent, s->items.objects[0].node);  // numbered when they begin
   EXPECT_LT(s->items.objects[0].node, own.parent);
 }
@@ -173,7 +173,7 @@ TEST(Parser, AppliesTransformsInTheOrderWritten) {
       "transform 0 1 0 -1 0 0 0 0 1");
   const SceneNode& node = s->items.nodeOf(0);
   EXPECT_EQ(node.transforms.steps.size(), 1u);
-  const Vec3 image = mapPoint(chainAt(node.transforms, {}).forward, {0, 0, 0});
+  const Vec3 image = mapPoint(chainAt(node.transforms, {})->forward, {0, 0, 0});
   EXPECT_NEAR(image.x, -9, 1e-12);
   EXPECT_NEAR(image.y, 5, 1e-12);
   EXPECT_NEAR(image.z, 7, 1e-12);
@@ -184,7 +184,7 @@ TEST(Parser, KeepsMovingStepsApart) {
       "define spin (time * 90) sphere 1 0 0 0 scale 2 2 2 scale 2 2 2 rotate 0 0 1 (spin) translate 1 0 0");
   const SceneNode& node = s->items.nodeOf(0);
   ASSERT_EQ(node.transforms.steps.size(), 3u);
-  const Vec3 image = mapPoint(chainAt(node.transforms, {1, 0}).forward, {1, 0, 0});
+  const Vec3 image = mapPoint(chainAt(node.transforms, {1, 0})->forward, {1, 0, 0});
   EXPECT_NEAR(image.x, 1, 1e-12);
   EXPECT_NEAR(image.y, 4, 1e-12);
 }
@@ -196,7 +196,7 @@ TEST(Parser, GivesTransformsBehindATextureToTheTexture) {
   const SceneNode& node = s->items.nodeOf(0);
   ASSERT_EQ(node.textures.size(), 2u);
   EXPECT_EQ(node.transforms.steps.size(), 1u);
-  EXPECT_EQ(mapPoint(chainAt(node.textures[0].transforms, {}).forward, {1, 0, 0}), (Vec3{4, 1, 1}));
+  EXPECT_EQ(mapPoint(chainAt(node.textures[0].transforms, {})->forward, {1, 0, 0}), (Vec3{4, 1, 1}));
   EXPECT_TRUE(node.textures[1].transforms.empty());
 }
 
@@ -358,11 +358,21 @@ TEST(Parser, TakesAGridOfBadSizeAsAList) {
   EXPECT_EQ(s->items.objects.size(), 1u);
 }
 
-TEST(Parser, DemandsTwoOperandsOfCsg) {
-  EXPECT_EQ(errorOf("\nname bad intersect\n sphere 1 0 0 0\n sphere 1 0 0 0\n sphere 1 0 0 0\nend"),
-            "s.ray:2:10: error: the CSG operation `intersect` needs exactly two objects and has 3");
+TEST(Parser, RefusesTransformsThatHaveNoInverseTogether) {
+  EXPECT_EQ(errorOf("sphere 1 0 0 0\n  scale 1e17 1 1 rotate 1 2 3 33 scale 1e-17 1 1"),
+            "s.ray:2:3: error: these transforms together lose all digits: there is no way back");
+  EXPECT_EQ(errorOf("sphere 1 0 0 0 scale 1e-200 1 1 scale 1e200 1 1"), "");
+}
+
+TEST(Parser, DemandsTwoOperandsOfCsgAndTakesMore) {
+  const auto s = good("\nname bad difference\n sphere 1 0 0 0\n sphere 1 0 0 0\n sphere 1 0 0 0\nend");
+  ASSERT_EQ(s->warnings.size(), 1u);
+  EXPECT_EQ(firstLine(s->warnings[0]),
+            "s.ray:2:10: warning: the CSG operation `difference` has 3 objects, in Rayshade 4 it has two: "
+            "all others "
+            "are taken from the first");
   EXPECT_EQ(errorOf("union sphere 1 0 0 0 end"),
-            "s.ray:1:1: error: the CSG operation `union` needs exactly two objects and has 1");
+            "s.ray:1:1: error: the CSG operation `union` needs two objects and has 1");
 }
 
 TEST(Parser, AllowsOnlyObjectsAndSurfacesInAggregates) {
