@@ -3,7 +3,9 @@
 #   make              build the programs into bin/
 #   make demo         install what is missing, render a picture over PVM, compare it with the sequential one
 #   make check        install what is missing, build, run all tests
-#   make install PREFIX=/usr/local        programs into PREFIX/bin, and where `pvm` looks by convention
+#   make install PREFIX=/usr/local        programs into PREFIX/bin, and where `pvm` looks by convention; their manual pages
+#                     and completions for bash into PREFIX/share.  `make uninstall PREFIX=...` removes exactly that
+#   make man          the manual pages alone, into bin/share/man (`make` writes them, too)
 #   make check-sanitized   the tests of what reads bytes of others or juggles tasks, under clang's sanitizers for
 #                     addresses and undefined behaviour; all tests: make SAN=address,undefined check
 #   make docs         the generated parts of the documents (docs/generate); `make check` finds what is out of date
@@ -52,7 +54,11 @@ sanitized := SAN=address,undefined OPTIMIZE=$(or $(OPTIMIZE),-O1) CXX="$(CLANG)"
 objects = $(patsubst %.cc,$(BUILD)/%.o,$(1))
 find_sources = $(sort $(shell find $(1) -name '*.cc'))
 
-core := $(call objects,$(filter-out rayshade/program/main.cc rayshade/program/error_main.cc,$(call find_sources,rayshade)))
+not_core := rayshade/program/main.cc rayshade/program/error_main.cc rayshade/program/version.cc
+core := $(call objects,$(filter-out $(not_core),$(call find_sources,rayshade)))
+# The commit is known to this one object, which is compiled anew when it is another.
+version := $(BUILD)/rayshade/program/version.o
+commit := $(shell [ -e .git ] && git describe --always --dirty --abbrev=12 --exclude='*' 2>/dev/null)
 spd := $(call objects,$(filter-out scenes/spd/main.cc,$(call find_sources,scenes/spd)))
 pvm_door := $(call objects,$(filter-out pvm/link/host_file.cc,$(call find_sources,pvm/link)))
 pvm_programs := $(call objects,pvm/program/main.cc pvm/program/host_program.cc)
@@ -72,10 +78,15 @@ benches := $(patsubst tests/bench/%.cc,$(BIN)/bench/%,$(filter-out $(embree_benc
 
 roles := host voxel-trace pyramid-trace shade
 programs := $(BIN)/rayshade $(BIN)/rayshade-error $(BIN)/spd $(roles:%=$(BIN)/rayshade-%)
+# The programs write what is to be read about them.
+documented := rayshade rayshade-error rayshade-host spd
+pages := $(documented:%=$(BIN)/share/man/man1/%.1) $(patsubst %,$(BIN)/share/man/man1/rayshade-%.1,$(filter-out host,$(roles)))
+completions := $(documented:%=$(BIN)/share/bash-completion/completions/%)
 test_programs := $(BIN)/rayshade-tests $(BIN)/link-tests $(BIN)/pvm-tests
 
-.PHONY: all demo docs check check-sanitized build-tests test guarded install fuzz fuzzers bench benches bench-embree experiments prove-adding graph format clean packages always
-all: $(programs)
+.PHONY: all man demo docs check check-sanitized build-tests test guarded install install-files uninstall fuzz fuzzers bench benches bench-embree experiments prove-adding graph format clean packages always
+all: $(programs) $(pages) $(completions)
+man: $(pages)
 
 # One short line for a command, or with V=1 the command.
 verbose := $(filter-out 0,$(V))
@@ -85,11 +96,14 @@ quietly := $(if $(verbose),,@)
 # What was built with other flags is built again, and what held files that are gone.
 $(BUILD)/flags: now = $(strip $(filter-out ccache,$(CXX)) $(FLAGS) $(long_running) $(EXTRA_FLAGS))
 $(BUILD)/sources: now = $(core) $(tasks) $(spd) $(support) $(oracle) $(tests) $(pvm_tests) $(link_tests) $(guarded_tests)
-$(BUILD)/flags $(BUILD)/sources: always
+$(BUILD)/commit: now = $(commit)
+$(BUILD)/flags $(BUILD)/sources $(BUILD)/commit: always
 	@mkdir -p $(@D)
 	@echo '$(subst ','\'',$(now))' | cmp -s - $@ || echo '$(subst ','\'',$(now))' >$@
 
 $(core) $(tasks): private also := $(long_running)
+$(version): private also := -DRAYSHADE_COMMIT='"$(commit)"'
+$(version): $(BUILD)/commit
 $(BUILD)/%.o: %.cc $(BUILD)/flags
 	@mkdir -p $(@D)
 	$(call say,compile $<)
@@ -111,18 +125,26 @@ $(quietly)$(CXX) $(FLAGS) $(EXTRA_FLAGS) $(filter %.o,$^) $(filter %.a,$^) $(1) 
 endef
 libraries := $(BUILD)/libtasks.a $(BUILD)/libspd.a $(BUILD)/libcore.a
 
-$(BIN)/rayshade: $(BUILD)/rayshade/program/main.o $(BUILD)/libcore.a
+$(BIN)/rayshade: $(BUILD)/rayshade/program/main.o $(version) $(BUILD)/libcore.a
 	$(call link)
-$(BIN)/rayshade-error: $(BUILD)/rayshade/program/error_main.o $(BUILD)/libcore.a
+$(BIN)/rayshade-error: $(BUILD)/rayshade/program/error_main.o $(version) $(BUILD)/libcore.a
 	$(call link)
-$(BIN)/spd: $(BUILD)/scenes/spd/main.o $(BUILD)/libspd.a
+$(BIN)/spd: $(BUILD)/scenes/spd/main.o $(version) $(BUILD)/libspd.a $(BUILD)/libcore.a
 	$(call link)
-$(BIN)/rayshade-host: $(pvm_programs) $(pvm_door) $(BUILD)/libtasks.a $(BUILD)/libcore.a
+$(BIN)/rayshade-host: $(pvm_programs) $(version) $(pvm_door) $(BUILD)/libtasks.a $(BUILD)/libcore.a
 	$(call link,-lpvm3)
 # The role of a task is the name under which it was started: one program, several names.
 $(BIN)/rayshade-voxel-trace $(BIN)/rayshade-pyramid-trace $(BIN)/rayshade-shade: $(BIN)/rayshade-host
 	$(call say,link $@)
 	$(quietly)ln -f $< $@
+$(BIN)/share/man/man1/%.1: $(BIN)/%
+	@mkdir -p $(@D)
+	$(quietly)$(if $(filter $*,$(documented)),$< --manual-page,echo .so man1/rayshade-host.1) >$@.part
+	@mv $@.part $@
+$(BIN)/share/bash-completion/completions/%: $(BIN)/%
+	@mkdir -p $(@D)
+	$(quietly)$< --completions >$@.part
+	@mv $@.part $@
 $(BIN)/rayshade-tests: $(tests) $(fuzzed) $(oracle) $(BUILD)/libsupport.a $(libraries)
 	$(call link,-lgtest -lgtest_main -lpthread)
 $(BIN)/guarded-tests: $(guarded_tests) $(fuzzed) $(BUILD)/libsupport.a $(libraries)
@@ -150,7 +172,7 @@ check: packages
 check-sanitized:
 	@tests/support/install_packages nice
 	@$(MAKE) $(sanitized) guarded
-build-tests: $(programs) $(test_programs)
+build-tests: all $(test_programs)
 test: build-tests
 	@tests/support/run_tests $(BIN)
 
@@ -181,11 +203,20 @@ fuzz:
 fuzzers: $(fuzzers)
 
 install: all
-	install -d $(DESTDIR)$(PREFIX)/bin
-	install -m 755 $(programs) $(DESTDIR)$(PREFIX)/bin
-	@if [ -z "$(DESTDIR)" ]; then \
-	  install -d $$HOME/pvm3/bin/LINUX64 && \
-	  for role in $(roles); do ln -sf $(abspath $(PREFIX))/bin/rayshade-$$role $$HOME/pvm3/bin/LINUX64/; done; fi
+	@$(MAKE) install-files
+to := $(DESTDIR)$(abspath $(PREFIX))
+shared := $(patsubst $(BIN)/%,%,$(pages) $(completions))
+in_home := $(HOME)/pvm3/bin/LINUX64
+install-files:
+	@for file in $(notdir $(programs)); do install -D -m 755 $(BIN)/$$file $(to)/bin/$$file || exit; done
+	@for file in $(shared); do install -D -m 644 $(BIN)/$$file $(to)/$$file || exit; done
+	@if [ -z "$(DESTDIR)" ]; then install -d $(in_home) && \
+	  for role in $(roles); do ln -sf $(to)/bin/rayshade-$$role $(in_home)/ || exit; done; fi
+	@echo "  installed into $(to): bin, share/man, share/bash-completion"
+uninstall:
+	rm -f $(addprefix $(to)/bin/,$(notdir $(programs))) $(addprefix $(to)/,$(shared))
+	@if [ -z "$(DESTDIR)" ]; then for role in $(roles); do \
+	  [ "$$(readlink $(in_home)/rayshade-$$role)" != $(to)/bin/rayshade-$$role ] || rm -f $(in_home)/rayshade-$$role; done; fi
 
 prove-adding: ; @tests/support/add_primitive
 format:

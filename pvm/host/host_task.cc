@@ -59,20 +59,19 @@ void HostTask::renderFrame(const View& view, const PictureSpec& picture, std::in
   reconfigure();
   const double begin = machine_.now();
   Sampler& sampler = issuing_.sampler();
-  Completed completed{0, sampler.area().height, 0};
   std::vector<Color> colors;
   while (!sampler.finished()) {
-    while (sampler.takeRow(colors)) {
-      row(colors);
-      ++completed.rows;
-    }
+    while (sampler.takeRow(colors)) row(colors);
     if (sampler.finished()) break;
     if (!roster_.complete()) reconfigure();
     issuing_.issue();
     summary_.peakInFlight = std::max<std::uint64_t>(summary_.peakInFlight, issuing_.inFlight());
     if (options_.dynamicShading) sendWeights();
-    completed.samples = sampler.counts().given;
-    if (progress) progress(completed);
+    if (progress) {
+      Completed completed = sampler.completed();
+      completed.samples -= issuing_.inFlight();
+      progress(completed);
+    }
     takeEvents(1);
   }
   summary_.notFinite += sampler.counts().notFinite;

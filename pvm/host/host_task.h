@@ -24,11 +24,6 @@ class HostTask {
   using Accepted = TypeList<ItemsTaken, Ready, Report, Pong, Load, Answer, SampleColors, PyramidWanted>;
   // Reads the scene once more, from the beginning, into a sink.
   using SceneReader = std::function<void(SceneSink&)>;
-  // How much of a frame is there.
-  struct Completed {
-    std::int32_t rows = 0, allRows = 0;
-    std::uint64_t samples = 0;
-  };
 
   // `survey`: of the first frame, or of any when nothing moves.
   HostTask(Machine& machine, SceneReader readScene, const Survey& survey, const SceneSettings& settings,

@@ -60,6 +60,10 @@ void Roster::startMissing() {
     if (slave.summary.task != kNobody && ++successions_ > options_.mostSuccessions)
       throw HostError("tasks keep dying: given up after " + std::to_string(options_.mostSuccessions) +
                       " successors; the last to die was " + lastDeath_);
+    if (slave.earlyDeaths >= options_.mostEarlyDeaths)
+      throw HostError("given up after " + std::to_string(slave.earlyDeaths) +
+                      " deaths before it was ready: " + lastDeath_ +
+                      "; with more tasks (--voxels) or hosts each holds less of the scene");
     const std::vector<HostInfo> hosts = machine_.hosts();
     const auto mapped = mapProcesses(hosts, options_.wishes);
     const bool stands = std::any_of(hosts.begin(), hosts.end(),
@@ -90,6 +94,7 @@ Spawned Roster::spawn(Slave& slave, const std::vector<HostInfo>& hosts) {
 void Roster::bury(Slave& slave, const std::string& how) {
   if (slave.task == kNobody) return;
   lastDeath_ = std::string(programName(slave.placement.role)) + " on " + slave.placement.host + ": " + how;
+  slave.earlyDeaths = slave.ready ? 0 : slave.earlyDeaths + 1;
   byTask_.erase(static_cast<std::int32_t>(slave.task));
   slave.task = kNobody;
   slave.hasItems = false;

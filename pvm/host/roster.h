@@ -18,6 +18,7 @@ struct Slave {
   Placement placement;
   TaskId task = kNobody;  // kNobody: dead, or not started yet
   bool hasItems = false;
+  int earlyDeaths = 0;    // in a row, before it was ready
   int batchesOut = 0;     // shipped and not answered
   bool ready = false;     // for the epoch
   double heard = 0;       // when it last said anything

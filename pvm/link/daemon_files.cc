@@ -37,6 +37,27 @@ MachineState knock(const std::string& path) {
   return answered ? MachineState::alive : forbidden ? MachineState::foreign : MachineState::stale;
 }
 
+// True: some are left whose processes live.
+bool removeSocketsOfTheDead() {
+  const std::string prefix = "pvmtmp";  // pvmtmp<process number>.<count>
+  bool someLive = false;
+  std::error_code ignored;
+  std::filesystem::directory_iterator entry(pvmDirectory(), ignored);
+  for (; entry != std::filesystem::directory_iterator(); entry.increment(ignored)) {
+    const std::string path = entry->path().string(), name = entry->path().filename().string();
+    if (!name.starts_with(prefix) || !mine(path, S_IFSOCK)) continue;
+    const long process = std::strtol(name.c_str() + prefix.size(), nullptr, 10);
+    std::ifstream commandLine("/proc/" + std::to_string(process) + "/cmdline");
+    const bool lives = commandLine.peek() != std::ifstream::traits_type::eof();
+    someLive = someLive || (lives && process != getpid());
+    if (process <= 0 || (lives && process != getpid())) continue;
+    // Our own are still open when the daemon has gone and libpvm could not end in order.  The daemon of an added host
+    // listens at a socket with the number of its parent, which has ended.
+    if (process == getpid() || knock(path) == MachineState::stale) unlink(path.c_str());
+  }
+  return someLive;
+}
+
 }  // namespace
 
 std::string environment(const char* name) {
@@ -90,20 +111,10 @@ MachineState lookForMachine() {
   return knock(socketPath());
 }
 
-void removeRouteSockets() {
-  const std::string prefix = "pvmtmp";  // pvmtmp<process number>.<count>
-  std::error_code ignored;
-  std::filesystem::directory_iterator entry(pvmDirectory(), ignored);
-  for (; entry != std::filesystem::directory_iterator(); entry.increment(ignored)) {
-    const std::string path = entry->path().string(), name = entry->path().filename().string();
-    if (!name.starts_with(prefix) || !mine(path, S_IFSOCK)) continue;
-    const long process = std::strtol(name.c_str() + prefix.size(), nullptr, 10);
-    std::ifstream commandLine("/proc/" + std::to_string(process) + "/cmdline");
-    const bool ended = commandLine.peek() == std::ifstream::traits_type::eof();
-    if (process <= 0 || (!ended && process != getpid())) continue;
-    // The daemon of an added host listens at a socket with the number of its parent, which has ended.
-    if (knock(path) == MachineState::stale) unlink(path.c_str());
-  }
+void removeRouteSockets(double patience) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(patience);
+  while (removeSocketsOfTheDead() && std::chrono::steady_clock::now() < end)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
 }
 
 }  // namespace rayshade

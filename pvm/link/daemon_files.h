@@ -20,8 +20,8 @@ enum class MachineState {
 MachineState lookForMachine();
 
 // libpvm leaves the names of the sockets at which direct routes were opened; takes away those of this process and of
-// processes that have ended, where nobody listens.
-void removeRouteSockets();
+// processes that have ended, where nobody listens.  Waits so many seconds for others to end.
+void removeRouteSockets(double patience = 0);
 
 // Removes the files of a daemon that is gone.  Only what is ours and is what it should be: the address file is not to be
 // trusted with names of other files.

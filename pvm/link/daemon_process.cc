@@ -21,6 +21,7 @@
 
 #include "pvm/link/daemon.h"
 #include "pvm/link/daemon_files.h"
+#include "rayshade/base/interruption.h"
 
 namespace rayshade {
 namespace {
@@ -56,7 +57,7 @@ constexpr rlim_t kDescriptors =
 std::string readUntilReady(int descriptor, bool& ready) {
   const double end = steadySeconds() + kStartSeconds;
   std::string text;
-  for (ready = false; !ready && steadySeconds() < end;) {
+  for (ready = false; !ready && !interrupted() && steadySeconds() < end;) {
     pollfd wait{descriptor, POLLIN, 0};
     if (::poll(&wait, 1, 100) <= 0) continue;
     char buffer[512];
@@ -110,6 +111,7 @@ void startDaemon(const std::string& hostFile, const std::string& ownName, pid_t&
   const std::string printed = child > 0 ? readUntilReady(ends[0], ready) : std::strerror(errno);
   close(ends[0]);
   daemon = std::max(child, 0);
+  checkInterruption();
   if (!ready) throw MachineError(program + " did not start: " + inOneLine(printed));
   if (lookForMachine() !=
       MachineState::alive)  // two were started at once, and the other has the address file

@@ -15,6 +15,7 @@ namespace {
 
 constexpr int kFragmentBytes = 65536;  // a packet in one write; PVM's own 4080 costs two thirds of the speed
 constexpr double kLastOutputSeconds = 0.2;  // for the last lines of tasks that were ended
+constexpr double kFarewellSeconds = 1;      // for the tasks of a daemon that has gone: it has ended them, too
 constexpr int kLargestPacket = 1 << 30;
 
 TaskId enrol() {
@@ -63,7 +64,7 @@ PvmLink::~PvmLink() {
   }
   output_.endAll();
   if (!daemon_.lost()) pvm_exit();
-  removeRouteSockets();
+  removeRouteSockets(daemon_.lost() && parent_ == kNobody ? kFarewellSeconds : 0);
 }
 
 bool PvmLink::connected(TaskId task) const {

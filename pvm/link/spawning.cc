@@ -7,6 +7,8 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "pvm/link/daemon_files.h"
+
 namespace rayshade {
 namespace {
 
@@ -61,6 +63,8 @@ Spawned spawnTask(Daemon& daemon, Command command, const std::string& host) {
       "host " + named + " has neither " + program.string() + " nor " + program.filename().string() +
           " in its search path (ep= in the host file, or PVM_PATH): build it there, or set RAYSHADE_TASKS"};
 }
+
+bool wasSpawned() { return !environment("PVMEPID").empty(); }
 
 int endTask(TaskId task) {
   pvm_kill(number(task));

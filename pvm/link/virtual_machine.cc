@@ -20,6 +20,7 @@
 #include <utility>
 
 #include "pvm/link/daemon.h"
+#include "rayshade/base/interruption.h"
 
 namespace rayshade {
 namespace {
@@ -164,6 +165,7 @@ void VirtualMachine::joinHosts(const std::vector<HostLine>& wanted, const Machin
     if (isThisMachine(host.name)) continue;
     int code = PvmAlready;
     for (;;) {
+      checkInterruption();
       const std::vector<std::string> present = hostNames();
       if (std::find(present.begin(), present.end(), host.name) != present.end()) code = PvmOk;
       if (code != PvmAlready || steadySeconds() > end) break;

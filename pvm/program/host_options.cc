@@ -1,9 +1,34 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pvm/program/host_options.h"
 
-#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdlib>
+
+#include "rayshade/program/option_values.h"
 
 namespace rayshade {
+namespace {
+
+// 12c or 3.5; nothing: neither.
+std::optional<Horizon> readHorizon(const std::string& text) {
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  const bool inCells = *end == 'c';
+  if (end == text.c_str() || end[inCells ? 1 : 0] != '\0' || !(value >= 0 && std::isfinite(value)))
+    return std::nullopt;
+  return Horizon{inCells ? Horizon::Kind::cells : Horizon::Kind::distance, value};
+}
+
+CLI::Validator horizon() {
+  return CLI::Validator(
+      [](const std::string& text) {
+        if (text == "auto" || readHorizon(text)) return std::string();
+        return "`" + text + "` is neither auto, nor a number of cells (12c), nor a distance (3.5)";
+      },
+      "");
+}
+
+}  // namespace
 
 void applySchedule(HostProgramOptions& o, std::uint32_t hosts) {
   HostOptions& host = o.host;
@@ -32,40 +57,36 @@ void applySchedule(HostProgramOptions& o, std::uint32_t hosts) {
                                              : ShadowPolicy::automatic;
   }
   if (o.cacheMegabytes) policy.cacheBytes = static_cast<std::uint64_t>(*o.cacheMegabytes * 1e6);
-  if (o.horizon && *o.horizon != "auto") {
-    char* end = nullptr;
-    const double value = std::strtod(o.horizon->c_str(), &end);
-    const bool inCells = *end == 'c';
-    if (end == o.horizon->c_str() || end[inCells ? 1 : 0] != '\0' || !(value >= 0))
-      throw HostError("--horizon is auto, a number of cells (12c) or a distance (3.5), not " + *o.horizon);
-    policy.horizon = {inCells ? Horizon::Kind::cells : Horizon::Kind::distance, value};
-  }
+  if (o.horizon && *o.horizon != "auto") policy.horizon = *readHorizon(*o.horizon);
 }
 
 void declareHostOptions(CLI::App& app, HostProgramOptions& o) {
   declareOptions(app, o.render);
   const std::string tasks = "Tasks";
-  app.add_option("--hosts", o.machine.hostFile, "PVM host file; without: this machine alone")->group(tasks);
+  app.add_option("--hosts", o.machine.hostFile, "PVM host file; without: this machine alone")
+      ->type_name(kFile)
+      ->check(CLI::ExistingFile)
+      ->group(tasks);
   app.add_flag("--missing-hosts", o.machine.allowMissingHosts, "go on without hosts that do not answer")
       ->group(tasks);
   app.add_option("--voxels", o.host.wishes.voxels, "voxel-trace tasks (default: two per host)")
-      ->check(CLI::Range(1, 4096))
+      ->check(wholeNumberFrom(1, 4096))
       ->group(tasks);
   app.add_option("--shades", o.host.wishes.shades, "shade tasks (default: one per four voxel-trace tasks)")
-      ->check(CLI::Range(1, 4096))
+      ->check(wholeNumberFrom(1, 4096))
       ->group(tasks);
   app.add_option("--voxels-per-task", o.host.voxelsPerTask, "voxels that each voxel-trace task holds")
-      ->check(CLI::Range(1, 64))
+      ->check(wholeNumberFrom(1, 64))
       ->group(tasks);
   app.add_option("--split", o.split, "voxels of equal size, or of equal predicted cost")
       ->check(CLI::IsMember({"equal", "cost"}))
       ->group(tasks);
   app.add_option("--pyramids", o.pyramids, "pyramid-trace tasks (default: by the schedule)")
-      ->check(CLI::Range(0, 4096))
+      ->check(wholeNumberFrom(0, 4096))
       ->group(tasks);
   app.add_option("--clusters", o.host.wishes.clusters,
                  "copies of the model, each distributed over voxel-trace tasks")
-      ->check(CLI::Range(1, 64))
+      ->check(wholeNumberFrom(1, 64))
       ->group(tasks);
   const std::string sharing = "What travels: rays or objects";
   app.add_option("--schedule", o.schedule,
@@ -76,6 +97,7 @@ void declareHostOptions(CLI::App& app, HostProgramOptions& o) {
       ->group(sharing);
   app.add_option("--horizon", o.horizon,
                  "how far pyramids go: auto, a number of cells (12c), a distance (3.5)")
+      ->check(horizon())
       ->group(sharing);
   app.add_option("--shadows", o.shadows, "shadow rays: forward, local or auto")
       ->check(CLI::IsMember({"forward", "local", "auto"}))
@@ -86,25 +108,27 @@ void declareHostOptions(CLI::App& app, HostProgramOptions& o) {
       ->check(CLI::IsMember({"separate", "local"}))
       ->group(sharing);
   app.add_option("--cache", o.cacheMegabytes, "object cache of each task, in MB")
-      ->check(CLI::PositiveNumber)
+      ->check(numberFrom(0.001, 1e9))
       ->group(sharing);
   app.add_option("--cells", o.host.cells, "cells of the bin-tree, about (default: by the size of the scene)")
-      ->check(CLI::Range(1, 1 << 22))
+      ->check(wholeNumberFrom(1, 1 << 22))
       ->group(sharing);
   app.add_option("--tile", o.host.tileSamples, "samples of a pyramid, at most")
-      ->check(CLI::Range(1, 65536))
+      ->check(wholeNumberFrom(1, 65536))
       ->group(sharing);
   app.add_flag("--dynamic-shading", o.host.dynamicShading, "choose shade tasks by how busy they are")
       ->group(tasks);
   app.add_option("--window", o.host.window, "samples on their way at a time")
-      ->check(CLI::Range(1, 1 << 24))
+      ->check(wholeNumberFrom(1, 1 << 24))
       ->group(tasks);
   app.add_option("--patience", o.patience,
                  "seconds of silence after which a task that renders counts as hanging (default: 30)")
-      ->check(CLI::Range(0.1, 1e6))
+      ->check(numberFrom(0.1, 1e6))
       ->group(tasks);
   app.add_flag("--plan", o.plan, "render nothing: print which tasks would run where and why")->group(tasks);
   app.add_option("--table", o.tableFile, "write what each task did to this file, as tab-separated values")
+      ->type_name(kFile)
+      ->check(notEmpty())
       ->group(tasks);
   app.add_flag("--mixed", o.host.mixedArithmetic, "go on when hosts compute different bits")->group(tasks);
 }

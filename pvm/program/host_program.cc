@@ -1,20 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pvm/program/host_program.h"
 
+#include <sys/stat.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <cinttypes>
+#include <filesystem>
 #include <fstream>
 
 #include "pvm/host/host_task.h"
 #include "pvm/link/pvm_link.h"
+#include "pvm/link/spawning.h"
 #include "pvm/program/host_options.h"
 #include "pvm/program/task_table.h"
 #include "pvm/schedule/plan.h"
 #include "rayshade/base/interruption.h"
+#include "rayshade/program/command_line.h"
+#include "rayshade/program/frame_files.h"
 #include "rayshade/program/output_file.h"
 #include "rayshade/program/progress.h"
+#include "rayshade/program/run.h"
 
 namespace rayshade {
 namespace {
@@ -37,6 +42,11 @@ class FirstPass final : public SceneSink {
   FeatureSink features;
 };
 
+bool regularFile(int descriptor) {
+  struct stat status {};
+  return fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode);
+}
+
 // The hosts that there would be; asks a virtual machine that runs, but changes and starts nothing.
 std::vector<HostInfo> plannedHosts(const MachineOptions& options) {
   std::vector<HostLine> lines;
@@ -55,9 +65,20 @@ std::vector<HostInfo> plannedHosts(const MachineOptions& options) {
   return hostsAfterJoining(running, lines, isThisMachine, name);
 }
 
-int run(HostProgramOptions& options) {
-  // The first pass finds all that is wrong with the scene before anything is started.
+// What needs memory, for the message when there is not enough.
+struct Need {
+  const char* what = "to read the scene";
   FirstPass pass;
+
+  std::string story() const {
+    return std::string(what) + ": the scene has " + std::to_string(pass.features.features().shapeCount()) +
+           " shapes so far; " + memoryOfProcess();
+  }
+};
+
+int run(HostProgramOptions& options, Need& need) {
+  // The first pass finds all that is wrong with the scene before anything is started.
+  FirstPass& pass = need.pass;
   SceneHead head = parseScene(options.render.parse, pass);
   applyOptions(options.render, head);
   Survey survey = pass.survey.survey();
@@ -73,21 +94,16 @@ int run(HostProgramOptions& options) {
     return 0;
   }
   const PixelArea area = *pixelArea(head.picture);
-  const std::string outputFile = chooseOutput(options.render, head);
+  const FrameFiles files(options.render, head,
+                         wasSpawned() && !regularFile(STDOUT_FILENO) ? "the pvm console" : "");
   const bool quiet = options.render.quiet || head.report.quiet;
 
   ParseOptions again = options.render.parse;
   again.warn = nullptr;
   again.print = nullptr;
   const std::int32_t first = head.picture.firstFrame;
-  auto open = [&](std::int32_t frame) {
-    const std::string file = frameFile(outputFile, frame, head.picture.frames);
-    std::optional<PictureFormat> format = options.render.format;
-    if (options.render.sixteenBit && formatOf(file) == PictureFormat::png) format = PictureFormat::png16;
-    return std::make_unique<PictureWriter>(file, area.width, area.height, head.picture.gamma, format);
-  };
   // Whatever is to be written, before any task is started.
-  std::unique_ptr<PictureWriter> writer = open(first);
+  std::unique_ptr<PictureWriter> writer = files.open(first);
   OutputFile table(options.tableFile), report(reportFile(options.render, head));
 
   VirtualMachine machine(options.machine);
@@ -103,9 +119,10 @@ int run(HostProgramOptions& options) {
   HostTask host(
       link, [&](SceneSink& sink) { parseScene(again, sink); }, survey, head.settings, options.host);
   const std::int32_t everyRows = rowsBetweenLines(options.render, head);
+  need.what = "for the picture";
   Picture sum{area.width, area.height, {}};
   for (std::int32_t frame = first; frame < first + head.picture.frames; ++frame) {
-    if (frame != first) writer = open(frame);
+    if (frame != first) writer = files.open(frame);
     ProgressLine progress(!quiet);
     std::int32_t rows = 0;
     host.renderFrame(
@@ -115,9 +132,10 @@ int run(HostProgramOptions& options) {
           appendRow(sum, row);
           if (everyRows > 0 && ++rows % everyRows == 0) sayLine(rows, area.height, area.width);
         },
-        [&](const HostTask::Completed& p) { progress.show(p.rows, p.allRows, p.samples, "samples"); });
+        [&](const Completed& done) { progress.show(done); });
     writer->finish();
     progress.clear();
+    if (!quiet && files.named()) std::fprintf(stderr, "wrote %s\n", placeOf(files.nameOf(frame)).c_str());
     const std::uint64_t pictureSum = checksum(sum);
     sum.pixels.clear();
     if (frame == first + head.picture.frames - 1) {
@@ -142,11 +160,7 @@ int runHostProgram(int argc, char** argv) {
   CLI::App app("rayshade-host - renders a scene with many tasks on a PVM virtual machine", "rayshade-host");
   HostProgramOptions options;
   declareHostOptions(app, options);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
+  if (const std::optional<int> status = readCommandLine(app, argc, argv)) return *status;
   listenForInterruption();
   options.render.parse.warn = [&](const std::string& message) {
     if (!options.render.quiet) std::fprintf(stderr, "%s\n", message.c_str());
@@ -154,15 +168,13 @@ int runHostProgram(int argc, char** argv) {
   options.render.parse.print = [](const std::string& message) {
     std::fprintf(stderr, "%s\n", message.c_str());
   };
-  try {
-    return run(options);
-  } catch (const SceneError& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    return 1;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "rayshade-host: %s\n", error.what());
-    return 1;
-  }
+  Need need;
+  const int status = runProgram(
+      "rayshade-host", [&] { return run(options, need); }, [&] { return need.story(); });
+  if (status != 0 && wasSpawned())
+    std::fprintf(stderr, "rayshade-host: names of files that do not begin with / are looked for in %s\n",
+                 std::filesystem::current_path().c_str());
+  return status;
 }
 
 }  // namespace rayshade

@@ -8,15 +8,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cstdio>
 #include <exception>
+#include <new>
+#include <stdexcept>
 #include <string_view>
 
 #include "pvm/host/host_task.h"
 #include "pvm/link/pvm_link.h"
+#include "pvm/link/spawning.h"
 #include "pvm/messages/event_loop.h"
 #include "pvm/program/host_program.h"
 #include "pvm/shade/shade_task.h"
 #include "pvm/trace/pyramid_task.h"
 #include "pvm/trace/voxel_task.h"
+#include "rayshade/program/run.h"
+#include "rayshade/program/version.h"
 
 namespace {
 
@@ -24,16 +29,35 @@ using namespace rayshade;
 
 static_assert(receiveAllMessages<HostTask, VoxelTask, PyramidTask, ShadeTask>());
 
+int sayVersion(std::string_view name) {
+  std::printf("%s\n", versionText(std::string(name)).c_str());
+  return 0;
+}
+
+int startedByHand(std::string_view name) {
+  std::fprintf(stderr,
+               "%.*s: rayshade-host starts this program, and gives it its work: start rayshade-host\n",
+               static_cast<int>(name.size()), name.data());
+  return 2;
+}
+
 template <class Task>
-int runSlave() {
+int runSlave(std::string_view name) {
+  if (!wasSpawned()) return startedByHand(name);
   PvmLink link;
-  if (link.parent() == kNobody) {
-    std::fprintf(stderr, "this task is spawned by rayshade-host, not started by hand\n");
-    return 2;
-  }
-  link.watch(link.parent());  // nobody works for the dead
+  if (link.parent() == kNobody) return startedByHand(name);  // from the pvm console
+  link.watch(link.parent());                                 // nobody works for the dead
   Task task(link);
-  runTask(task, link);
+  try {
+    runTask(task, link);
+  } catch (const std::bad_alloc&) {
+    std::string message = "not enough memory for this task: " + memoryOfProcess();
+    if constexpr (requires { task.share(); })
+      message +=
+          "; its share of the scene: " + objectsAndBytes(task.share().objects(), task.share().bytes()) +
+          " so far";
+    throw std::runtime_error(message);
+  }
   return 0;
 }
 
@@ -44,9 +68,10 @@ int main(int argc, char** argv) {
   name = name.substr(name.find_last_of('/') + 1);
   try {
     if (name == programName(Role::host)) return runHostProgram(argc, argv);
-    if (name == programName(Role::voxelTrace)) return runSlave<VoxelTask>();
-    if (name == programName(Role::pyramidTrace)) return runSlave<PyramidTask>();
-    if (name == programName(Role::shade)) return runSlave<ShadeTask>();
+    if (argc == 2 && std::string_view(argv[1]) == "--version") return sayVersion(name);
+    if (name == programName(Role::voxelTrace)) return runSlave<VoxelTask>(name);
+    if (name == programName(Role::pyramidTrace)) return runSlave<PyramidTask>(name);
+    if (name == programName(Role::shade)) return runSlave<ShadeTask>(name);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%.*s: %s\n", static_cast<int>(name.size()), name.data(), error.what());
     return 1;

@@ -26,6 +26,7 @@ struct HostOptions {
   bool dynamicShading = false;  // shade tasks chosen by how busy they are
   std::uint64_t seed = 0;
   bool mixedArithmetic = false;  // go on when hosts compute different bits
+  int mostEarlyDeaths = 3;       // of one place in a row, before it was ready: its memory will not grow
   int mostSuccessions = 100;     // deaths after which the render is given up
   double pingAfter = 10;         // seconds of silence until a task is asked whether it lives
   double killAfter = 30;         // seconds of silence, asked and no answer, until it counts as hanging

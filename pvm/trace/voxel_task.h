@@ -25,6 +25,7 @@ class VoxelTask {
   bool work(double until);
   void flush();
   bool finished() const { return context_.finished; }
+  const VoxelShare& share() const { return share_; }
   void noteIdle(double seconds) { context_.idleSeconds += seconds; }
 
   Epoch epoch() const { return context_.epoch; }

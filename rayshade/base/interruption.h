@@ -1,36 +1,31 @@
-// Ctrl-C and SIGTERM as a question that a loop can ask, so that files and tasks are put away in order.
+// Ctrl-C, SIGTERM and SIGHUP as a question that a loop can ask, so that files and tasks are put away in order.
 //
-// The second signal ends the program at once.
+// A signal that was ignored when the program began stays ignored (nohup; a background job of a script).  The second one
+// ends the program at once.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <csignal>
 #include <stdexcept>
+#include <string>
 
 namespace rayshade {
 
 class Interrupted : public std::runtime_error {
  public:
-  Interrupted() : std::runtime_error("interrupted") {}
+  using std::runtime_error::runtime_error;
 };
 
-inline volatile std::sig_atomic_t& interruptionFlag() {
-  static volatile std::sig_atomic_t flag = 0;  // a signal handler can reach nothing else
-  return flag;
-}
+void listenForInterruption();
 
-inline void listenForInterruption() {
-  auto handler = [](int signal) {
-    if (interruptionFlag() != 0) std::signal(signal, SIG_DFL);
-    interruptionFlag() = 1;
-  };
-  std::signal(SIGINT, handler);
-  std::signal(SIGTERM, handler);
-}
+// Has a signal come?
+bool interrupted();
+std::string interruptionText();  // interrupted by SIGINT
 
 // Throws Interrupted when a signal has come.
-inline void checkInterruption() {
-  if (interruptionFlag() != 0) throw Interrupted();
-}
+void checkInterruption();
+
+// Dies of the signal that has come, so that whoever started the program (a shell with a loop over scenes) knows.  Nothing is
+// put away any more.
+[[noreturn]] void dieOfInterruption();
 
 }  // namespace rayshade

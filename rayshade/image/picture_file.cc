@@ -3,6 +3,7 @@
 
 #include <array>
 #include <bit>
+#include <cctype>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -21,16 +22,23 @@ std::uint32_t mostOf(PictureFormat format) { return format == PictureFormat::png
 
 }  // namespace
 
-PictureFormat formatOf(const std::string& fileName) {
-  if (fileName.ends_with(".png")) return PictureFormat::png;
-  if (fileName.ends_with(".ppm")) return PictureFormat::ppm;
-  if (fileName.ends_with(".pfm")) return PictureFormat::pfm;
-  return PictureFormat::generic;
+std::optional<PictureFormat> formatOf(const std::string& fileName) {
+  std::string ending = fileName.substr(fileName.find_last_of('/') + 1);
+  ending.erase(0, ending.find_last_of('.'));
+  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  if (ending == ".png") return PictureFormat::png;
+  if (ending == ".ppm") return PictureFormat::ppm;
+  if (ending == ".pfm") return PictureFormat::pfm;
+  if (ending == ".mtv" || !ending.starts_with('.')) return PictureFormat::generic;
+  return std::nullopt;
 }
 
 PictureWriter::PictureWriter(const std::string& fileName, std::int32_t width, std::int32_t height,
                              double gamma, std::optional<PictureFormat> format)
-    : width_(width), height_(height), gamma_(gamma), format_(format.value_or(formatOf(fileName))) {
+    : width_(width),
+      height_(height),
+      gamma_(gamma),
+      format_(format ? *format : formatOf(fileName).value_or(PictureFormat::generic)) {
   if (width < 1 || height < 1 || width > kLongestSide || height > kLongestSide)
     failOn(fileName,
            "a picture cannot have " + std::to_string(width) + " x " + std::to_string(height) + " pixels");

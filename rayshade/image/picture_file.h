@@ -18,15 +18,19 @@ class PngStream;
 
 enum class PictureFormat : std::uint8_t { generic, ppm, png, png16, pfm };
 
-// By the end of the name: .png .ppm .pfm; any other, and standard output, is generic as in rayshade.
-PictureFormat formatOf(const std::string& fileName);
+// The endings of names that say in which format a picture is written.
+inline constexpr const char* kPictureEndings = ".png, .ppm, .pfm (linear floats) and .mtv (generic)";
+// By the end of the name, in upper or lower case; a name without a dot, and standard output, is generic as in rayshade.
+// Nothing: no format is called so.
+std::optional<PictureFormat> formatOf(const std::string& fileName);
 
 // Writes a picture row by row, as a whole or not at all (complete_file.h).  PFM goes from the bottom up: its rows wait in
 // memory until the last.
 // All functions throw std::runtime_error, with the file's name, when the file cannot be written.
 class PictureWriter {
  public:
-  // Finds out whether the file can be written at all.  An empty name or "-" is standard output.
+  // Finds out whether the file can be written at all.  An empty name or "-" is standard output.  Without a format the name
+  // says it; if it does not, it is generic.
   PictureWriter(const std::string& fileName, std::int32_t width, std::int32_t height, double gamma = 1,
                 std::optional<PictureFormat> format = std::nullopt);
   ~PictureWriter();  // an incomplete file goes away

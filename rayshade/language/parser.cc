@@ -13,7 +13,8 @@ namespace {
 class Parser {
  public:
   Parser(Tokens& tokens, const ParseOptions& options, SceneSink& sink)
-      : print_(options.print),
+      : tokens_(tokens),
+        print_(options.print),
         log_(tokens, options.warn),
         objects_(tokens, log_, sink, options.flipTriangleNormals),
         in_(objects_.arguments()) {}
@@ -21,11 +22,15 @@ class Parser {
   // Reads all there is; the messages of what is wrong are in errors() then.
   SceneHead parse();
   const std::string& errors() const { return log_.errors(); }
+  // Lines, each with its newline; what is no error is said.
+  std::string errorsOf(const SceneText::Verdict& verdict);
+  void finish() { log_.finish(); }
 
  private:
   void statement();
   void define();
 
+  Tokens& tokens_;
   const std::function<void(const std::string&)>& print_;
   FaultLog log_;
   ObjectParser objects_;
@@ -55,11 +60,25 @@ void Parser::statement() {
   if (!beginsStatement(word)) in_.unexpected("a statement");
   in_.subject = in_.token().place;
   if (objects_.statement(word, world_)) return;
+  const std::string keyword(tokens_.text());
   in_.advance();
-  if (readViewing(word, in_, head_)) return;
+  if (readViewing(word, in_, head_)) return head_.places.set(keyword, tokens_.describe(in_.subject));
   if (word == Word::define) return define();
   const double value = in_.number();  // of `print`, the only one left
   if (print_) print_(std::to_string(value));
+}
+
+std::string Parser::errorsOf(const SceneText::Verdict& verdict) {
+  std::string errors;
+  int count = 0;
+  for (const PreprocessorMessage& message : verdict.messages) {
+    if (!verdict.failed || message.isWarning) {
+      log_.warn(message.text, message.complete);
+    } else if (++count <= kMostErrors) {
+      errors += message.complete + "\n";
+    }
+  }
+  return errors;
 }
 
 void Parser::define() {
@@ -86,9 +105,10 @@ SceneHead parseScene(const ParseOptions& options, SceneSink& sink) {
   // Asking before cpp has ended would wait for output that nobody reads: an error ends it instead.
   if (errors.empty() || tokens.current().kind == Token::Kind::end) {
     const SceneText::Verdict verdict = text.verdict();
-    if (verdict.failed) errors = verdict.messages + (errors.empty() ? "" : "\n") + errors;
-    if (!verdict.failed && !verdict.messages.empty() && options.warn) options.warn(verdict.messages);
+    errors = parser.errorsOf(verdict) + errors;
+    if (errors.ends_with('\n')) errors.pop_back();
   }
+  parser.finish();
   if (!errors.empty()) throw SceneError(errors);
   return head;
 }
@@ -105,6 +125,7 @@ SceneHead parseSceneText(std::string_view text, const std::string& name, const P
       name);
   Parser parser(tokens, options, sink);
   SceneHead head = parser.parse();
+  parser.finish();
   if (!parser.errors().empty()) throw SceneError(parser.errors());
   return head;
 }

@@ -8,6 +8,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdio>
@@ -24,19 +25,19 @@ namespace rayshade {
 namespace {
 
 constexpr std::size_t kBlock = std::size_t{1} << 16;
-constexpr std::size_t kMostMessages = std::size_t{1} << 16;  // bytes of messages, then cpp is stopped
-constexpr std::size_t kShownMessages = 2000;                 // bytes of them that are passed on
+constexpr std::size_t kMostMessages = std::size_t{1} << 16;  // of messages, then cpp is stopped
 
 [[noreturn]] void failWith(const std::string& name, const std::string& what, int error) {
   throw SceneError(name + ": error: " + what + ": " + std::strerror(error));
 }
 
-// read() that goes on after signals.
+// read() that goes on after signals, except those that end us.
 ssize_t readSome(int descriptor, char* to, std::size_t most) {
-  ssize_t got;
-  do got = ::read(descriptor, to, most);
-  while (got < 0 && errno == EINTR);
-  return got;
+  for (;;) {
+    const ssize_t got = ::read(descriptor, to, most);
+    if (got >= 0 || errno != EINTR) return got;
+    checkInterruption();
+  }
 }
 
 struct CloseFile {
@@ -66,7 +67,11 @@ bool seekable(int descriptor) { return ::lseek(descriptor, 0, SEEK_SET) == 0; }
 int openText(const std::string& fileName, const std::string& name) {
   if (!fileName.empty() && fileName != "-") {
     const int file = ::open(fileName.c_str(), O_RDONLY | O_CLOEXEC);
-    if (file < 0) failWith(name, "cannot be read", errno);
+    if (file < 0) {
+      const int error = errno;
+      checkInterruption();  // nobody may be writing into a named pipe
+      failWith(name, "cannot be read", error);
+    }
     return file;
   }
   if (!seekable(STDIN_FILENO)) {
@@ -254,16 +259,13 @@ SceneText::Verdict SceneText::verdict() {
     }
     cpp_ = -1;
   }
-  Verdict verdict;
-  verdict.failed = stopped_ || !WIFEXITED(status_) || WEXITSTATUS(status_) != 0;
-  // The way to a message of a deep include is long: the message itself comes first.
-  std::istringstream lines(said_);
-  for (std::string line; std::getline(lines, line) && verdict.messages.size() < kShownMessages;) {
-    if (line.starts_with("In file included from") || line.starts_with("                 from")) continue;
-    verdict.messages += (verdict.messages.empty() ? "" : "\n") + line;
+  Verdict verdict{stopped_ || !WIFEXITED(status_) || WEXITSTATUS(status_) != 0, preprocessorMessages(said_)};
+  const bool saysWhy = std::any_of(verdict.messages.begin(), verdict.messages.end(),
+                                   [](const PreprocessorMessage& m) { return !m.isWarning; });
+  if (verdict.failed && !saysWhy) {
+    const std::string text = "the preprocessor `cpp` has failed";
+    verdict.messages.push_back({false, text, name_ + ": error: " + text});
   }
-  if (verdict.failed && verdict.messages.empty())
-    verdict.messages = name_ + ": error: the preprocessor `cpp` has failed";
   return verdict;
 }
 

@@ -13,6 +13,9 @@
 #include <sys/types.h>
 
 #include <string>
+#include <vector>
+
+#include "rayshade/language/preprocessor_messages.h"
 
 namespace rayshade {
 
@@ -30,7 +33,7 @@ class SceneText {
   // What cpp had to say; ask when the text has been read to its end.
   struct Verdict {
     bool failed = false;
-    std::string messages;  // lines, without a newline at the end
+    std::vector<PreprocessorMessage> messages;
   };
   Verdict verdict();
 

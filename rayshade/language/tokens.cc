@@ -260,7 +260,8 @@ std::string Tokens::fileName() {
 }
 
 SourcePlace Tokens::describe(const TokenPlace& place) const {
-  return {files_[place.file], place.line, static_cast<std::uint32_t>(place.offset + 1 - place.lineStart)};
+  const std::uint64_t column = place.offset + 1 - std::min(place.lineStart, place.offset);
+  return {files_[place.file], place.line, static_cast<std::uint32_t>(column)};
 }
 
 std::string Tokens::excerpt(const TokenPlace& place) {

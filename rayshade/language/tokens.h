@@ -22,7 +22,7 @@ namespace rayshade {
 // Where something stands, cheap enough for every token.
 struct TokenPlace {
   std::uint64_t offset = 0;     // from the beginning of the text                                     [bytes]
-  std::uint64_t lineStart = 0;  // offset of its line; behind `offset`: the line as a whole is meant
+  std::uint64_t lineStart = 0;  // offset of its line; behind `offset`: its text is gone
   std::uint32_t line = 1;
   std::uint32_t file = 0;  // number of a file's name
 };

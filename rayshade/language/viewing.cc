@@ -5,6 +5,7 @@
 #include <array>
 
 #include "rayshade/base/error.h"
+#include "rayshade/image/picture_file.h"
 #include "rayshade/language/parse_member.h"
 
 namespace rayshade {
@@ -157,6 +158,8 @@ bool readViewing(Word word, ArgumentReader& in, SceneHead& head) {
       return true;
     case Word::outfile: {
       const std::string name = in.fileName();
+      if (!formatOf(name))
+        in.warn("`" + name + "` becomes a generic picture: endings are " + kPictureEndings);
       if (head.outputFile.empty()) {
         head.outputFile = name;
       } else {
@@ -198,33 +201,40 @@ void checkHead(const SceneHead& head, const std::string& fileName) {
   const Camera& camera = head.camera;
   const PictureSpec& picture = head.picture;
   std::string errors;
-  auto demand = [&](bool good, const std::string& message) {
-    if (!good) errors += (errors.empty() ? "" : "\n") + fileName + ": error: " + message;
+  // `said`: the statements that it concerns.
+  auto demand = [&](bool good, const std::vector<std::string>& said, const std::string& message) {
+    if (good) return;
+    const SourcePlace place = head.places.last(said).value_or(SourcePlace{fileName});
+    errors += (errors.empty() ? "" : "\n") + describe(place) + ": error: " + message;
   };
-  demand(picture.samplesPerSide >= 1 && picture.samplesPerSide <= kMaxSamplesPerSide,
+  demand(picture.samplesPerSide >= 1 && picture.samplesPerSide <= kMaxSamplesPerSide, {"sample"},
          "a sample count of " + std::to_string(picture.samplesPerSide) +
              ": there are 1 to 8 samples along each side of a pixel");
   const std::string size = std::to_string(picture.width) + " x " + std::to_string(picture.height);
   auto sensible = [](std::int32_t side) { return side >= 1 && side <= kMaxPictureSide; };
   const bool screenGood = sensible(picture.width) && sensible(picture.height);
-  demand(screenGood,
+  demand(screenGood, {"screen"},
          "a screen of " + size + " pixels: each side has 1 to " + std::to_string(kMaxPictureSide));
   if (screenGood) {
-    demand(pixelArea(picture).has_value(), "the window is not inside of the screen of " + size + " pixels");
+    demand(pixelArea(picture).has_value(), {"window"},
+           "the window is not inside of the screen of " + size + " pixels");
     const double vertical =
         camera.verticalFov.value_or(camera.horizontalFov * picture.height / picture.width);
     demand(camera.horizontalFov > 0 && camera.horizontalFov < 180 && vertical > 0 && vertical < 180,
+           {"fov", "screen"},
            "a field of view (fov) of " + std::to_string(camera.horizontalFov) + " by " +
                std::to_string(vertical) + " degrees: both must lie between 0 and 180");
   }
-  demand(picture.frames >= 1, "the number of frames is below 1");
-  demand(picture.filter.width >= 0, "the width of the filter is negative");
-  demand(camera.eyeShown == Camera::Eye::middle || camera.eyeSeparation.has_value(),
+  demand(picture.frames >= 1 && picture.frames <= kMostFrames, {"frames"},
+         std::to_string(picture.frames) + " frames: there are 1 to " + std::to_string(kMostFrames));
+  demand(picture.filter.width >= 0, {"filter"}, "the width of the filter is negative");
+  demand(camera.eyeShown == Camera::Eye::middle || camera.eyeSeparation.has_value(), {"stereo"},
          "a stereo picture needs the separation of the eyes (eyesep)");
   const Vec3 view = normalize(camera.target - camera.eye);
-  demand(view != Vec3{} && isFinite(view), "the eye (eyep) and what it looks at (lookp) are the same point");
+  demand(view != Vec3{} && isFinite(view), {"eyep", "lookp"},
+         "the eye (eyep) and what it looks at (lookp) are the same point");
   // A direction, not a length: the limit is an angle.
-  demand(view == Vec3{} || length(cross(view, normalize(camera.up))) >= 1e-5,
+  demand(view == Vec3{} || length(cross(view, normalize(camera.up))) >= 1e-5, {"eyep", "lookp", "up"},
          "the direction of view is parallel to up");
   if (!errors.empty()) throw SceneError(errors);
 }

@@ -1,9 +1,12 @@
 // The program `rayshade-error`: how far a picture is from a reference.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <CLI/CLI.hpp>
 #include <cstdio>
 
+#include "rayshade/base/interruption.h"
 #include "rayshade/image/picture_error.h"
+#include "rayshade/program/command_line.h"
+#include "rayshade/program/option_values.h"
+#include "rayshade/program/run.h"
 
 namespace {
 
@@ -16,9 +19,11 @@ struct Wishes {
 
 void writeDifference(const std::string& file, const PictureError& error, std::int32_t width,
                      std::int32_t height) {
+  listenForInterruption();  // from here on something is to be put away
   PictureWriter writer(file, width, height);
   std::vector<Color> row;
   for (double flip : error.flipOfPixels) {
+    checkInterruption();
     row.push_back({flip, flip, flip});
     if (row.size() < static_cast<std::size_t>(width)) continue;
     writer.row(row);
@@ -57,28 +62,27 @@ int run(const Wishes& wishes) {
 int main(int argc, char** argv) {
   CLI::App app("rayshade-error - how far a picture is from a reference", "rayshade-error");
   Wishes wishes;
-  app.set_help_flag("-h,--help", "show this and leave");
   app.add_option("reference", wishes.reference, "what it should be: .pfm (best), .ppm, .png or generic")
+      ->type_name(kFile)
+      ->check(notEmpty())
       ->required();
-  app.add_option("picture", wishes.picture, "what is judged, of the same size")->required();
+  app.add_option("picture", wishes.picture, "what is judged, of the same size")
+      ->type_name(kFile)
+      ->check(notEmpty())
+      ->required();
   app.add_flag("--json", wishes.json, "the figures as JSON");
   app.add_option("--difference", wishes.difference,
-                 "write a picture of the FLIP error of each pixel, black 0 to white 1");
+                 "write a picture of the FLIP error of each pixel, black 0 to white 1")
+      ->type_name(kFile)
+      ->check(notEmpty())
+      ->check(pictureFile());
   app.footer(
       "mrse: mean of (v - r)^2 / (|r| + 0.01)^2; rmse: root of the mean of (v - r)^2; flip: mean of "
       "LDR-FLIP, what a "
       "viewer sees.\nLight is linear: of files with levels only those written with gamma 1 mean what they "
       "say.\n"
       "Exit status: 0, 1 for bad files, 2 for a bad command line.");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
-  try {
-    return run(wishes);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    return 1;
-  }
+  if (const std::optional<int> status = readCommandLine(app, argc, argv)) return *status;
+  return runProgram(
+      "rayshade-error", [&] { return run(wishes); }, [] { return "for the pictures: " + memoryOfProcess(); });
 }

@@ -5,9 +5,12 @@
 #include <cinttypes>
 
 #include "rayshade/base/interruption.h"
+#include "rayshade/program/command_line.h"
+#include "rayshade/program/frame_files.h"
 #include "rayshade/program/options.h"
 #include "rayshade/program/output_file.h"
 #include "rayshade/program/progress.h"
+#include "rayshade/program/run.h"
 #include "rayshade/program/scene_plan.h"
 #include "rayshade/trace/render.h"
 
@@ -55,7 +58,19 @@ int printPlan(const Options& options) {
   return 0;
 }
 
-int run(const Options& options) {
+// What needs memory, for the message when there is not enough.
+struct Need {
+  const char* what = "to read the scene";
+  Scene scene;
+
+  std::string story() const {
+    return std::string(what) + ": the scene has " +
+           objectsAndBytes(scene.model.store().objectCount(), scene.bytes()) + " so far; " +
+           memoryOfProcess();
+  }
+};
+
+int run(const Options& options, Need& need) {
   Times times;
   double mark = secondsNow();
   auto lap = [&mark] {
@@ -64,7 +79,7 @@ int run(const Options& options) {
     return spent;
   };
 
-  Scene scene;
+  Scene& scene = need.scene;
   SceneHead head = parseScene(options.parse, scene.model.store());
   applyOptions(options, head);
   if (scene.model.store().objectCount() == 0)
@@ -72,7 +87,7 @@ int run(const Options& options) {
   scene.settings = head.settings;
   const View view = *viewOf(head.camera, head.picture);
   const PixelArea area = *pixelArea(head.picture);
-  const std::string outputFile = chooseOutput(options, head);
+  const FrameFiles files(options, head);
   times.read = lap();
   const bool quiet = options.quiet || head.report.quiet;
   const bool report = reportWanted(options, head);
@@ -80,31 +95,33 @@ int run(const Options& options) {
   const std::int32_t everyRows = rowsBetweenLines(options, head);
   const std::int32_t first = head.picture.firstFrame;
   for (std::int32_t frame = first; frame < first + head.picture.frames; ++frame) {
-    std::optional<PictureFormat> format = options.format;
-    const std::string file = frameFile(outputFile, frame, head.picture.frames);
-    if (options.sixteenBit && formatOf(file) == PictureFormat::png) format = PictureFormat::png16;
-    PictureWriter writer(file, area.width, area.height, head.picture.gamma, format);
+    const std::unique_ptr<PictureWriter> writer = files.open(frame);
     mark = secondsNow();
+    need.what = "to sort the objects of the scene";
     scene.prepare(exposureOf(head.picture, frame));
     times.build = lap();
     ProgressLine progress(!quiet);
+    need.what = "for the picture";
     Picture sum{area.width, area.height, {}};
     std::int32_t rows = 0;
-    const FrameResult result =
-        renderFrame(scene, view, head.picture, frame, options.seed, [&](const std::vector<Color>& row) {
-          checkInterruption();
-          writer.row(row);
+    const FrameResult result = renderFrame(
+        scene, view, head.picture, frame, options.seed,
+        [&](const std::vector<Color>& row) {
+          writer->row(row);
           if (report) appendRow(sum, row);
-          ++rows;
-          if (everyRows > 0 && rows % everyRows == 0) sayLine(rows, area.height, area.width);
-          progress.show(rows, area.height,
-                        static_cast<std::uint64_t>(rows) * static_cast<std::uint64_t>(area.width), "pixels");
+          if (everyRows > 0 && ++rows % everyRows == 0) sayLine(rows, area.height, area.width);
+        },
+        [&](const Sampler& sampler) {
+          checkInterruption();
+          progress.show(sampler.completed());
         });
-    writer.finish();
+    writer->finish();
     times.trace = lap();
     progress.clear();
     if (!quiet) warnOfNotFinite(result.samples.notFinite);
     if (report) writeReport(reportTo ? reportTo.file() : stderr, scene, result, times, checksum(sum));
+    if (options.verbose && files.named())
+      std::fprintf(stderr, "wrote %s\n", placeOf(files.nameOf(frame)).c_str());
   }
   reportTo.close();
   return 0;
@@ -113,18 +130,20 @@ int run(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  CLI::App app("rayshade - renders a scene in the language of Rayshade 4", "rayshade");
   Options options;
   bool plan = false;
-  if (const std::optional<int> status = readCommandLine(argc, argv, options, plan)) return *status;
+  declareOptions(app, options);
+  app.add_flag("--plan", plan, "render nothing: print what the scene uses, and what is switched off")
+      ->group("Messages");
+  if (const std::optional<int> status = readCommandLine(app, argc, argv)) return *status;
   listenForInterruption();
   options.parse.warn = [&options](const std::string& message) {
     if (!options.quiet) std::fprintf(stderr, "%s\n", message.c_str());
   };
   options.parse.print = [](const std::string& message) { std::fprintf(stderr, "%s\n", message.c_str()); };
-  try {
-    return plan ? printPlan(options) : run(options);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    return 1;
-  }
+  Need need;
+  return runProgram(
+      "rayshade", [&] { return plan ? printPlan(options) : run(options, need); },
+      [&] { return need.story(); });
 }

@@ -16,7 +16,6 @@ namespace rayshade {
 struct Options {
   ParseOptions parse;      // the scene file among it
   std::string outputFile;  // -O; empty: what the scene says, else standard output
-  std::optional<PictureFormat> format;
   std::uint64_t seed = 0;
   bool quiet = false, verbose = false;
   std::string verboseFile;  // -V: the report goes there
@@ -34,26 +33,16 @@ struct Options {
 // Declares the options in an application; what they say arrives in `options` when it parses.
 void declareOptions(CLI::App& app, Options& options);
 
-// The command line of the program `rayshade`; `plan`: nothing is to be rendered.  Says what is wrong with it, or helps;
-// then, and only then, there is a status to leave with.
-std::optional<int> readCommandLine(int argc, char** argv, Options& options, bool& plan);
-
 // Puts what was said over what the scene file says.  Throws SceneError where the two do not go together.
 void applyOptions(const Options& options, SceneHead& head);
 
 // The name of the scene in messages.
 std::string sceneName(const Options& options);
 
-// -O, else what the scene says; warns when both do.
 // Every so many rows a line is to say how far it is; 0: never.
 std::int32_t rowsBetweenLines(const Options& options, const SceneHead& head);
 // Is there to be a report at the end, and into which file; empty: to the terminal, or none.
 bool reportWanted(const Options& options, const SceneHead& head);
 std::string reportFile(const Options& options, const SceneHead& head);
-
-std::string chooseOutput(const Options& options, const SceneHead& head);
-
-// Where frame number `frame` goes: name.png, or name.0007.png when there are several.
-std::string frameFile(const std::string& name, std::int32_t frame, std::int32_t frames);
 
 }  // namespace rayshade

@@ -1,4 +1,5 @@
-// A line that says how far a render is, for people: on a terminal only.
+// How far a render is, for people: a line that changes on a terminal, a new line for each tenth elsewhere (a log, the pvm
+// console), unless tenths go by faster than one can read.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -8,6 +9,10 @@
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
+#include <functional>
+#include <utility>
+
+#include "rayshade/sampling/sampler.h"
 
 namespace rayshade {
 
@@ -29,20 +34,26 @@ inline void warnOfNotFinite(std::uint64_t samples) {
 
 class ProgressLine {
  public:
-  explicit ProgressLine(bool wanted) : shown_(wanted && isatty(STDERR_FILENO)), begin_(secondsNow()) {}
+  using Clock = std::function<double()>;  // seconds
+  explicit ProgressLine(bool wanted, bool terminal = isatty(STDERR_FILENO) == 1, Clock clock = secondsNow)
+      : wanted_(wanted), terminal_(terminal), clock_(std::move(clock)), begin_(clock_()), last_(begin_) {}
   ~ProgressLine() { clear(); }
 
-  void show(std::int32_t rows, std::int32_t allRows, std::uint64_t rays, const char* unit) {
-    const double now = secondsNow();
-    if (!shown_ || now - last_ < 0.1) return;
+  void show(const Completed& done) {
+    if (!wanted_ || done.samples == 0) return;
+    const double now = clock_(), spent = now - begin_;
+    if (now - last_ < (terminal_ ? 0.1 : 1)) return;
+    const double expected = static_cast<double>(std::max(done.expected, done.samples));
+    const double share = static_cast<double>(done.samples) / expected;
+    if (!terminal_ && 10 * share < tenths_ + 1) return;
     last_ = now;
-    const double spent = now - begin_;
-    std::fprintf(stderr, "\r%3d %%  row %d of %d  %.2f M %s/s", 100 * rows / std::max(allRows, 1), rows,
-                 allRows, 1e-6 * static_cast<double>(rays) / std::max(spent, 1e-9), unit);
-    if (rows > 0) std::fprintf(stderr, "  %.0f s left", spent * (allRows - rows) / rows);
-    std::fprintf(stderr, "\033[K");
+    tenths_ = static_cast<int>(10 * share);
+    std::fprintf(stderr, "%s%3.0f %%  row %d of %d  %.2f M samples/s  %.0f s left%s", terminal_ ? "\r" : "",
+                 terminal_ ? 100 * share : 10.0 * tenths_, done.rows, done.allRows,
+                 1e-6 * static_cast<double>(done.samples) / spent, spent * (1 - share) / share,
+                 terminal_ ? "\033[K" : "\n");
     std::fflush(stderr);
-    drawn_ = true;
+    drawn_ = terminal_;
   }
   void clear() {
     if (drawn_) std::fprintf(stderr, "\r\033[K");
@@ -50,8 +61,10 @@ class ProgressLine {
   }
 
  private:
-  bool shown_, drawn_ = false;
-  double begin_, last_ = 0;
+  bool wanted_, terminal_, drawn_ = false;
+  int tenths_ = 0;  // said
+  Clock clock_;
+  double begin_, last_;
 };
 
 }  // namespace rayshade

@@ -18,6 +18,7 @@ namespace rayshade {
 inline constexpr std::int32_t kMaxSamplesPerSide = 8;
 inline constexpr std::int32_t kMaxPictureSide =
     65536;  // pixels: rows are held in memory, whatever a file says
+inline constexpr std::int32_t kMostFrames = 1'000'000;  // each is a file
 
 struct PixelFilter {
   bool gaussian = false;

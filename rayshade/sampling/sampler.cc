@@ -62,6 +62,22 @@ bool Sampler::give(SampleId& out) {
   return false;
 }
 
+Completed Sampler::completed() const {
+  const auto width = static_cast<std::uint64_t>(area().width),
+             height = static_cast<std::uint64_t>(area().height);
+  const SamplingRules& rules = rows_.rules();
+  const auto cells = static_cast<std::uint64_t>(rules.side) * static_cast<std::uint64_t>(rules.side);
+  Completed done{rows_.first(), area().height, rows_.counts.given, width * height * cells};
+  if (!rules.refining) return done;
+  const std::uint64_t inside = (width - 2) * (height - 2), border = width * height - inside;
+  const double onBorder = static_cast<double>(begunOnBorder_ * cells);
+  const double each = begunInside_ == 0 ? static_cast<double>(cells)
+                                        : std::max(static_cast<double>(done.samples) - onBorder, 0.0) /
+                                              static_cast<double>(begunInside_);
+  done.expected = border * cells + static_cast<std::uint64_t>(each * static_cast<double>(inside));
+  return done;
+}
+
 // All samples of a pixel of the border, the first of any other, band by band and block by block.
 bool Sampler::giveAhead(SampleId& out) {
   const SamplingRules& rules = rows_.rules();
@@ -89,6 +105,9 @@ bool Sampler::giveAhead(SampleId& out) {
 
 void Sampler::stepAhead() {
   const std::int32_t width = area().width;
+  const std::int32_t last = area().height - 1;
+  const bool onBorder = ahead_.x == 0 || ahead_.x == width - 1 || ahead_.y == 0 || ahead_.y == last;
+  if (ahead_.y <= last) ++(onBorder ? begunOnBorder_ : begunInside_);
   const std::int32_t band = ahead_.y / kBlock * kBlock,
                      bandEnd = std::min(band + kBlock, rows_.rules().rowCount);
   const std::int32_t block = ahead_.x / kBlock * kBlock, blockEnd = std::min(block + kBlock, width);

@@ -14,6 +14,12 @@
 
 namespace rayshade {
 
+// How much of a frame there is.
+struct Completed {
+  std::int32_t rows = 0, allRows = 0;
+  std::uint64_t samples = 0, expected = 0;  // given out; in all, as far as can be told
+};
+
 class Sampler {
  public:
   // Whether pixels that will probably be refined are asked for before that is decided: pays when there are
@@ -26,6 +32,8 @@ class Sampler {
 
   const PixelArea& area() const { return rows_.rules().area; }
   const SamplerCounts& counts() const { return rows_.counts; }
+  // Taken is that the pixels that have not begun will need as many samples as those that have.
+  Completed completed() const;
 
   // Puts samples to be traced into `out` and says how many.  None: wait for colours or take rows first (rows
   // that are not taken hold back those far below, so that memory stays bounded).  Each sample is given once.
@@ -51,7 +59,8 @@ class Sampler {
   PixelRows rows_;
   CrossSweep sweep_;
   bool guessing_;
-  std::int32_t rowsAhead_;      // how far rows are held beyond the first that is not taken
+  std::int32_t rowsAhead_;  // how far rows are held beyond the first that is not taken
+  std::uint64_t begunInside_ = 0, begunOnBorder_ = 0;  // pixels
   Place ahead_{0, 0};           // the next pixel to get its first sample, or all if it is on the border
   std::deque<Place> demanded_;  // full pixels that are not given completely, in order of decision
   std::set<Place> guesses_;     // pixels that are probably full some day

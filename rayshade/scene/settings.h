@@ -4,12 +4,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "rayshade/atmosphere/all.h"
 #include "rayshade/base/color.h"
+#include "rayshade/base/error.h"
 #include "rayshade/lights/all.h"
 #include "rayshade/sampling/picture_spec.h"
 
@@ -49,6 +52,25 @@ struct ReportSpec {
   std::string file;  // empty: standard error
 };
 
+// Where the statements stand that are no items, the last one of each keyword (or the option that overrides
+// it): for messages about what they say together.
+class StatementPlaces {
+ public:
+  void set(const std::string& keyword, const SourcePlace& place) {
+    std::erase_if(places_, [&](const auto& known) { return known.first == keyword; });
+    places_.emplace_back(keyword, place);
+  }
+  // Of the last statement with one of these keywords.
+  std::optional<SourcePlace> last(const std::vector<std::string>& keywords) const {
+    for (auto at = places_.rbegin(); at != places_.rend(); ++at)
+      if (std::find(keywords.begin(), keywords.end(), at->first) != keywords.end()) return at->second;
+    return std::nullopt;
+  }
+
+ private:
+  std::vector<std::pair<std::string, SourcePlace>> places_;  // in their order
+};
+
 // Everything in a scene file that is not an item.
 struct SceneHead {
   SceneSettings settings;
@@ -57,6 +79,7 @@ struct SceneHead {
   ReportSpec report;
   std::string outputFile;    // `outfile`; empty: not said
   bool filterGiven = false;  // the file has a `filter` statement
+  StatementPlaces places;
 };
 
 template <class Archive>

@@ -11,7 +11,8 @@ Exposure exposureOf(const PictureSpec& picture, std::int32_t frame) {
 }
 
 FrameResult renderFrame(Scene& scene, const View& view, const PictureSpec& picture, std::int32_t frame,
-                        std::uint64_t seed, const std::function<void(const std::vector<Color>&)>& row) {
+                        std::uint64_t seed, const std::function<void(const std::vector<Color>&)>& row,
+                        const std::function<void(const Sampler&)>& progress) {
   Sampler sampler(picture, seed, static_cast<std::uint32_t>(frame), Sampler::Guessing::no);
   FrameResult result;
   Tracer tracer(scene, scene.settings, result.counts);
@@ -25,6 +26,7 @@ FrameResult renderFrame(Scene& scene, const View& view, const PictureSpec& pictu
       primaryRays(view, picture, seed, frame, std::span(samples).first(count), rays);
       tracer.trace(rays, seen);
       for (std::size_t i = 0; i < count; ++i) sampler.supply(samples[i], seen[i]);
+      if (progress) progress(sampler);
     }
     while (sampler.takeRow(finished)) row(finished);
   }

@@ -3,75 +3,55 @@
 //   spd balls 6 > balls6.ray        597 872 spheres
 //   spd --help
 // SPDX-License-Identifier: BSD-3-Clause
-#include <charconv>
 #include <iostream>
-#include <optional>
-#include <span>
 #include <string>
-#include <string_view>
+#include <vector>
 
+#include "rayshade/program/command_line.h"
+#include "rayshade/program/option_values.h"
 #include "scenes/spd/spd.h"
 
 namespace {
 
+using namespace rayshade;
 using namespace rayshade::spd;
 
-void explain(std::ostream& out) {
-  out << "usage: spd NAME [SIZE] [--format rayshade|pov|tachyon] [--grid]\n\n"
-         "  --grid   put the objects into a grid, as Rayshade 4 needs it to be fast (format rayshade "
-         "only)\n\n"
-         "NAME      usual and largest SIZE\n";
-  for (const SceneKind& kind : sceneKinds()) {
-    out << kind.name << std::string(10 - kind.name.size(), ' ') << kind.usualSize << ' ' << kind.largestSize
-        << '\n';
-  }
+std::vector<std::string> namesOfScenes() {
+  std::vector<std::string> names;
+  for (const SceneKind& kind : sceneKinds()) names.emplace_back(kind.name);
+  return names;
 }
 
-struct CommandLine {
-  SceneRequest scene;
-  WriterOptions writer;
-};
-
-std::optional<int> wholeNumber(std::string_view text) {
-  int value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || value < 1) return std::nullopt;
-  return value;
-}
-
-std::optional<CommandLine> understand(std::span<char* const> words) {
-  CommandLine line;
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    const std::string_view word = words[i];
-    if (word == "--grid") {
-      line.writer.grid = true;
-    } else if (word == "--format" && i + 1 < words.size()) {
-      line.writer.format = words[++i];
-    } else if (line.scene.name.empty() && findScene(word)) {
-      line.scene.name = word;
-    } else if (const auto size = wholeNumber(word);
-               size && !line.scene.name.empty() && line.scene.size == 0) {
-      line.scene.size = *size;
-    } else {
-      return std::nullopt;
-    }
-  }
-  if (line.scene.name.empty()) return std::nullopt;
-  return line;
+std::string sizesOfScenes() {
+  std::string text;
+  for (const SceneKind& kind : sceneKinds())
+    text += (text.empty() ? "" : ", ") + std::string(kind.name) + " " + std::to_string(kind.usualSize) +
+            " to " + std::to_string(kind.largestSize);
+  return text;
 }
 
 }  // namespace
 
 int main(int count, char** words) {
-  if (count == 2 && std::string_view(words[1]) == "--help") {
-    explain(std::cout);
-    return 0;
-  }
+  CLI::App app("spd - writes a scene of the Standard Procedural Databases", "spd");
+  std::string name, format(WriterOptions{}.format);
+  int size = 0;
+  WriterOptions wishes;
+  app.add_option("name", name, "which scene")->check(CLI::IsMember(namesOfScenes()))->required();
+  app.add_option("size", size, "how large; the usual and the largest: " + sizesOfScenes())
+      ->check(wholeNumberFrom(1, 1'000'000));
+  app.add_option("--format", format, "for which renderer")
+      ->check(CLI::IsMember({"rayshade", "pov", "tachyon"}));
+  app.add_flag("--grid", wishes.grid,
+               "put the objects into a grid, as Rayshade 4 needs it to be fast (format rayshade only)");
+  app.footer("Exit status: 0, 1 when standard output cannot be written, 2 for a bad command line.");
+  if (const std::optional<int> status = readCommandLine(app, count, words)) return *status;
+
   std::ios::sync_with_stdio(false);
-  const auto line = understand({words + 1, words + count});
-  const auto writer = line ? makeWriter(line->writer, std::cout) : nullptr;
-  if (!writer || !writeScene(line->scene, *writer)) {
-    explain(std::cerr);
+  wishes.format = format;
+  if (!writeScene({name, size}, *makeWriter(wishes, std::cout))) {
+    std::cerr << "spd: " << name << " goes up to " << findScene(name)->largestSize << ", not " << size
+              << "\n";
     return 2;
   }
   std::cout.flush();

@@ -17,6 +17,7 @@
 #include <sstream>
 #include <thread>
 
+#include "tests/support/lab.h"
 #include "tests/support/private_machine.h"
 #include "tests/support/program.h"
 
@@ -223,14 +224,37 @@ TEST_F(Pvm, AKilledHostProgramLeavesNothingRunning) {
 }
 
 TEST_F(Pvm, InterruptionsEndInOrder) {
-  for (int signal : {SIGINT, SIGTERM}) {
+  for (int signal : {SIGINT, SIGTERM, SIGHUP}) {
     const auto host = startHost(std::string("-q --voxels 2 ") + kLong, "picture.pfm");
     ASSERT_TRUE(busyTask("rayshade-voxel-trace").has_value());
     kill(host->pid(), signal);
-    expectOneMessage(host->wait(kPatience), 1);
+    expectOneMessage(host->wait(kPatience), 128 + signal);  // by it, not an exit of its own
     expectNoPicture("picture.pfm");
+    EXPECT_TRUE(std::filesystem::is_empty(scratch_ / "pvm"));
     EXPECT_TRUE(waitFor([this] { return mine().empty(); }, 10)) << "processes are left";
   }
+}
+
+// A limit of memory that the host program itself exceeds, then only a task with its share of the scene.
+TEST_F(Pvm, WhatThereIsNotEnoughMemoryForIsSaid) {
+  const std::string scene = scratch("balls.ray");
+  ASSERT_EQ(std::system((programDirectory() + "/spd balls 5 >" + scene).c_str()), 0);
+  bool inHost = false, inTask = false;
+  for (int megabytes = 14; megabytes <= 120 && !inTask; megabytes += 2) {
+    const std::string line = "ulimit -v " + std::to_string(1024 * megabytes) + "; exec " +
+                             programDirectory() + "/rayshade-host -q -R 9 9 " + scene + " -O " +
+                             scratch("picture.png");
+    const Finished done = Program({"bash", "-c", line}, scratch("limited"), environment()).wait(kPatience);
+    if (done.status == 0) break;
+    ASSERT_EQ(done.status, 1) << megabytes << " MB: " << done.errors;
+    const bool byTask = done.errors.find("rayshade-voxel-trace: not enough memory") != std::string::npos;
+    inTask = inTask || (byTask && done.errors.find(" objects (") != std::string::npos &&
+                        done.errors.find("rayshade-host: given up after 3 deaths") != std::string::npos);
+    inHost = inHost ||
+             done.errors.starts_with("rayshade-host: not enough memory to read the scene: the scene has ");
+    expectNoPicture("picture.png");
+  }
+  EXPECT_TRUE(inHost && inTask) << inHost << inTask;
 }
 
 TEST_F(Pvm, MissingTaskProgramsAreNamed) {
@@ -301,32 +325,6 @@ TEST_F(Pvm, AnOrdinaryUserCanDoItToo) {
   EXPECT_TRUE(readText(directory + "/picture.png") == expected);
   EXPECT_TRUE(waitFor([&] { return processesWith("PVM_TMP=" + directory + "/pvm").empty(); }, 10));
 }
-
-// Pretend hosts NAME1, NAME2 ... and PVM on them.
-class Lab {
- public:
-  Lab(const std::string& name, const std::string& scratch) : name_(name), scratch_(scratch) {}
-  Lab(const Lab&) = delete;
-  Lab& operator=(const Lab&) = delete;
-  ~Lab() { run("down"); }
-
-  Finished run(const std::string& command) { return begin(command)->wait(60); }
-  std::unique_ptr<Program> begin(const std::string& command) const {
-    std::istringstream in("hosts/lab " + command);
-    return std::make_unique<Program>(std::vector<std::string>{std::istream_iterator<std::string>(in), {}},
-                                     scratch_, Program::Environment{{"RAYSHADE_LAB", name_}});
-  }
-  std::string host(int number) const { return name_ + std::to_string(number); }
-  // A task of that host has work.
-  bool busy(int number) const {
-    for (const pid_t pid : processesWith("PVM_TMP=/tmp/rayshade-" + name_ + "/" + host(number)))
-      if (cpuSecondsOf(pid).value_or(0) > 0.1) return true;
-    return false;
-  }
-
- private:
-  std::string name_, scratch_;
-};
 
 TEST_F(Pvm, SeveralHostsAndTheCrashOfOne) {
   if (geteuid() != 0) GTEST_SKIP() << "pretend hosts need root";

@@ -14,7 +14,7 @@
 namespace rayshade {
 
 struct Finished {
-  int status = -1;  // of the exit; 128 + signal when it was killed
+  int status = -1;  // of the exit; 128 + signal when one ended it
   bool inTime = true;
   std::string output, errors;  // what it wrote to standard output and standard error
   double seconds = 0;

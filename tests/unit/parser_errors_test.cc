@@ -3,6 +3,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include "rayshade/language/preprocessor_messages.h"
 #include "tests/support/parsed_text.h"
 
 namespace rayshade {
@@ -133,17 +134,71 @@ TEST(Parser, RefusesDirectivesWhenItMayNotPreprocess) {
 
 TEST(Parser, EndsWhenAFileIncludesItself) {
   const auto once = parseFile("tests/data/bad/include_self.ray");
-  EXPECT_NE(once->errors.find("tests/data/bad/include_self.ray:4: error: #include nested"), std::string::npos)
+  EXPECT_NE(once->errors.find("tests/data/bad/include_self.ray:4:1: error: #include nested"),
+            std::string::npos)
       << once->errors;
   EXPECT_NE(parseFile("tests/data/bad/include_self_twice.ray")->errors.find("#include"), std::string::npos);
 }
 
 TEST(Parser, BelievesTheExitStatusOfThePreprocessor) {
   const auto s = parseFile("tests/data/bad/include_missing.ray");
-  EXPECT_TRUE(s->errors.starts_with("tests/data/bad/include_missing.ray:")) << s->errors;
-  EXPECT_NE(s->errors.find("nowhere.inc"), std::string::npos);
-  EXPECT_NE(parseFile("tests/data/bad/open_comment.ray")->errors.find("open_comment.ray:2:"),
+  EXPECT_EQ(
+      s->errors,
+      "tests/data/bad/include_missing.ray:2:11: error: `nowhere.inc` cannot be included: No such file or "
+      "directory\n  #include \"nowhere.inc\"\n            ^");
+  EXPECT_NE(parseFile("tests/data/bad/open_comment.ray")->errors.find("open_comment.ray:2:1: error: "),
             std::string::npos);
+}
+
+// ---- what cpp says
+
+std::vector<std::string> completeOf(const std::string& said) {
+  std::vector<std::string> messages;
+  for (const PreprocessorMessage& m : preprocessorMessages(said))
+    messages.push_back((m.isWarning ? "W " : "E ") + m.complete);
+  return messages;
+}
+
+TEST(PreprocessorMessages, TakeOurForm) {
+  EXPECT_EQ(completeOf("In file included from b.inc:2,\n                 from a.ray:8:\n"
+                       "c.inc:3: error: no macro name given in #ifdef directive\n    3 | \t#ifdef\n      | \n"
+                       "a.ray:4:2: warning: #warning hmm [-Wcpp]\n    4 | #warning hmm\n      |  ^~~~~~~\n"
+                       "a.ray:5: note: here\n"),
+            (std::vector<std::string>{
+                "E c.inc:3:1: error: no macro name given in #ifdef directive\n  \t#ifdef\n  ^",
+                "W a.ray:4:2: warning: #warning hmm\n  #warning hmm\n   ^", "W a.ray:5:1: note: here"}));
+  EXPECT_EQ(
+      completeOf(
+          "nowhere/a.ray:4:2: fatal error: x.inc: No such file or directory\n    4 | sphere\n      |  ^\n"
+          "compilation terminated.\n"),
+      (std::vector<std::string>{
+          "E nowhere/a.ray:4:2: error: `x.inc` cannot be included: No such file or directory"}));
+  EXPECT_EQ(completeOf("cpp: error: unrecognized command-line option '-x'\n"),
+            (std::vector<std::string>{"E cpp: error: unrecognized command-line option '-x'"}));
+  EXPECT_EQ(completeOf("some line that nobody knows\n\n: 3\n").size(), 0u);
+}
+
+// ---- many warnings
+
+TEST(Warnings, OfOneKindAreSaidThreeTimesThenCounted) {
+  std::string text;
+  for (int i = 0; i < 3000; ++i) {
+    const std::string y = std::to_string(i);
+    text += "triangle 0 " + y + " 0 0 0 -1 1 " + y + " 0 0 0 -1 0 " + std::to_string(i + 1) + " 0 0 0 -1\n";
+    if (i % 2 == 0) text += "surface a" + y + " diffuse 1 1 1 surface a" + y + " diffuse 1 1 1\n";
+    if (i == 1000) text += "sphere 0 0 0 0\n";
+  }
+  const auto s = good(text);
+  ASSERT_EQ(s->warnings.size(), 3u + 3 + 1 + 2);
+  int counted = 0;
+  for (const std::string& warning : s->warnings) {
+    if (warning.starts_with("... and 2997 more of this kind: the corners run clockwise")) ++counted;
+    if (warning.starts_with("... and 1497 more of this kind: surface `a0` is defined again")) ++counted;
+    if (!warning.starts_with("... ")) {
+      EXPECT_NE(warning.find(": warning: "), std::string::npos) << warning;
+    }
+  }
+  EXPECT_EQ(counted, 2);
 }
 
 }  // namespace

@@ -132,7 +132,7 @@ std::string headError(const std::string& text) { return headError(good(text)->he
 
 TEST(Parser, ChecksTheHeadAtTheEnd) {
   EXPECT_EQ(headError(""), "");
-  EXPECT_EQ(headError("up 0 8 -1 eyep 0 -8 1"), "s.ray: error: the direction of view is parallel to up");
+  EXPECT_EQ(headError("up 0 8 -1 eyep 0 -8 1"), "s.ray:1:11: error: the direction of view is parallel to up");
   EXPECT_NE(headError("eyep 0 0 0").find("the same point"), std::string::npos);
   EXPECT_NE(headError("screen 100 100 window 0 100 0 99").find("window"), std::string::npos);
   EXPECT_EQ(headError("screen 100 100 window 0 99 0 99"), "");
@@ -150,6 +150,16 @@ TEST(Parser, ChecksWhatTheCommandLineMayHaveChanged) {
   EXPECT_NE(errorAfter([](PictureSpec& p) { p.width = 0; }).find("screen"), std::string::npos);
   EXPECT_NE(errorAfter([](PictureSpec& p) { p.height = 1'000'000'000; }).find("screen"), std::string::npos);
   EXPECT_NE(errorAfter([](PictureSpec& p) { p.frames = 0; }).find("frames"), std::string::npos);
+}
+
+// The last of the statements that contradict each other.
+TEST(Parser, SaysWhereTheHeadIsWrong) {
+  EXPECT_EQ(headError("sample 2\n\n sample 9\nsphere 1 0 0 0\n").substr(0, 18), "s.ray:3:2: error: ");
+  EXPECT_EQ(headError("lookp 1 2 3\neyep 4 5 6\n eyep 1 2 3\nfov 40").substr(0, 18), "s.ray:3:2: error: ");
+  EXPECT_EQ(headError("eyep 1 2 3\nscreen 9 9\nlookp 1 2 3").substr(0, 18), "s.ray:3:1: error: ");
+  EXPECT_EQ(headError("screen 100 100\nwindow 0 100 0 99").substr(0, 18), "s.ray:2:1: error: ");
+  EXPECT_EQ(headError("frames 2000000").substr(0, 18), "s.ray:1:1: error: ");
+  EXPECT_EQ(headError("\nfilter gauss -1").substr(0, 18), "s.ray:2:1: error: ");
 }
 
 TEST(Parser, ChecksStereoPictures) {

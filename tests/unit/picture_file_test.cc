@@ -134,8 +134,11 @@ TEST(Format, FollowsTheEndOfTheName) {
   EXPECT_EQ(formatOf("a.png"), PictureFormat::png);
   EXPECT_EQ(formatOf("a.ppm"), PictureFormat::ppm);
   EXPECT_EQ(formatOf("a.png.pfm"), PictureFormat::pfm);
-  for (const char* name : {"a.mtv", "a.raw", "a.rle", "png", "-", ""})
+  EXPECT_EQ(formatOf("a.PNG"), PictureFormat::png);
+  for (const char* name : {"a.mtv", "png", "-", "", "/dev/null", "v1.2/picture"})
     EXPECT_EQ(formatOf(name), PictureFormat::generic) << name;
+  for (const char* name : {"a.jpg", "a.rle", "a.png.gz", "a."})
+    EXPECT_EQ(formatOf(name), std::nullopt) << name;
 }
 
 TEST_F(PictureFile, LevelsComeBackAsTheyWereWritten) {

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rayshade/program/run.h"
+
+#include <sys/resource.h>
+
+#include <cstdio>
+#include <memory>
+#include <new>
+
+#include "rayshade/base/error.h"
+#include "rayshade/base/interruption.h"
+
+namespace rayshade {
+namespace {
+
+constexpr int kBadInput = 1, kBadCommandLine = 2;
+constexpr std::size_t kReserve = std::size_t{1} << 20;  // bytes, for the message that there are no more
+
+std::string megabytes(double bytes) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1f MB", 1e-6 * bytes);
+  return text;
+}
+
+// A signal may come to light as something else, as a file that could not be written.
+int endsWith(int status, const std::string& name, const std::string& message) {
+  std::fprintf(stderr, "%s\n", (interrupted() ? name + interruptionText() : message).c_str());
+  if (interrupted()) dieOfInterruption();
+  return status;
+}
+
+}  // namespace
+
+std::string objectsAndBytes(std::uint64_t objects, std::uint64_t bytes) {
+  return std::to_string(objects) + " objects (" + megabytes(static_cast<double>(bytes)) + ")";
+}
+
+std::string memoryOfProcess() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return "the process has " + megabytes(1024.0 * static_cast<double>(usage.ru_maxrss));
+}
+
+int runProgram(const std::string& program, const std::function<int()>& work,
+               const std::function<std::string()>& memory) {
+  const std::string name = program + ": ";
+  auto reserve = std::make_unique<char[]>(kReserve);
+  try {
+    return work();
+  } catch (const SceneError& error) {  // names the scene
+    return endsWith(kBadInput, name, error.what());
+  } catch (const CommandLineError& error) {
+    return endsWith(kBadCommandLine, name, name + error.what());
+  } catch (const std::bad_alloc&) {
+    reserve.reset();
+    return endsWith(kBadInput, name, name + "not enough memory " + memory());
+  } catch (const std::exception& error) {
+    return endsWith(kBadInput, name, name + error.what());
+  }
+}
+
+}  // namespace rayshade
