@@ -101,7 +101,7 @@ TEST(HardCase, AnOccluderCountsIfItIsNearerThanTheLight) {
   const std::string scene =
       "up 0 1 0 light 1 point 0 0 4 surface s diffuse 1 1 1 plane s 0 0 0 0 0 1 disc s 1 0 0";
   EXPECT_NEAR(colorSeen("10 0 5", "0 0 0", scene + text(4) + "0 0 1").r, 1, 1e-6);
-  EXPECT_EQ(colorSeen("3 0 3", "0 0 0", scene + text(4 - 1e-13) + "0 0 1").r, 0);
+  EXPECT_EQ(colorSeen("3 0 3", "0 0 0", scene + text(4 - 1e-12) + "0 0 1").r, 0);
 }
 
 TEST(HardCase, WhatShrinksToNothingIsGoneAndComesBack) {

@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include <algorithm>
 
 #include "rayshade/intersect/model.h"
@@ -59,14 +61,16 @@ struct Both {
   Model model;
 };
 
-// What `object` needs of its definition, all the way down.
-void addDefinition(ObjectStream& stream, const SceneObject& object, std::vector<Item>& items) {
+// What `object` needs of its definition, all the way down, but for what is in `added`.
+void addDefinition(ObjectStream& stream, const SceneObject& object, std::set<DefinitionId>& added,
+                   std::vector<Item>& items) {
   DefinitionId used = kWorld;
   if (const Instance* instance = std::get_if<Instance>(&object.body)) used = instance->definition;
   if (const Csg* csg = std::get_if<Csg>(&object.body)) used = csg->operands;
-  if (used == kWorld) return;
+  if (used == kWorld || !added.insert(used).second) return;
   stream.readDefinition(used, [&](const Item& item) {
-    if (const SceneObject* inside = std::get_if<SceneObject>(&item)) addDefinition(stream, *inside, items);
+    if (const SceneObject* inside = std::get_if<SceneObject>(&item))
+      addDefinition(stream, *inside, added, items);
     items.push_back(item);
   });
 }
@@ -102,7 +106,8 @@ TEST(ObjectStream, AnObjectWithItsFramesAndDefinitionsStandsOnItsOwn) {
         last = number(node.id);
         items.emplace_back(node);
       }
-      addDefinition(both.stream, one.object, items);
+      std::set<DefinitionId> added;
+      addDefinition(both.stream, one.object, added, items);
       items.emplace_back(one.object);
       for (const Item& item : std::vector<Item>(items)) {
         const SceneObject* object = std::get_if<SceneObject>(&item);

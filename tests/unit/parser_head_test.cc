@@ -103,7 +103,7 @@ TEST(Parser, KeepsLightsInTheirOrder) {
 
 TEST(Parser, SaysWhatIsWrongWithALight) {
   EXPECT_TRUE(errorOf("\nlight 1 directional 0 0 0").starts_with("s.ray:2:9: error: a directional light"));
-  EXPECT_TRUE(errorOf("light 1 area 0 0 0 1 0 0 0 0 1 0 1").starts_with("s.ray:1:28: error: a whole number"));
+  EXPECT_TRUE(errorOf("light 1 area 0 0 0 1 0 0 0 0 1 0 1").starts_with("s.ray:1:26: error: a whole number"));
   EXPECT_EQ(errorOf("light 1 sun 0 0 0"), "s.ray:1:9: error: a kind of light is expected here, not `sun`");
 }
 
@@ -154,12 +154,12 @@ TEST(Parser, ChecksWhatTheCommandLineMayHaveChanged) {
 
 // The last of the statements that contradict each other.
 TEST(Parser, SaysWhereTheHeadIsWrong) {
-  EXPECT_EQ(headError("sample 2\n\n sample 9\nsphere 1 0 0 0\n").substr(0, 18), "s.ray:3:2: error: ");
+  EXPECT_EQ(errorOf("sample 2\n\n sample 9\nsphere 1 0 0 0\n").substr(0, 18), "s.ray:3:9: error: ");
   EXPECT_EQ(headError("lookp 1 2 3\neyep 4 5 6\n eyep 1 2 3\nfov 40").substr(0, 18), "s.ray:3:2: error: ");
   EXPECT_EQ(headError("eyep 1 2 3\nscreen 9 9\nlookp 1 2 3").substr(0, 18), "s.ray:3:1: error: ");
   EXPECT_EQ(headError("screen 100 100\nwindow 0 100 0 99").substr(0, 18), "s.ray:2:1: error: ");
   EXPECT_EQ(headError("frames 2000000").substr(0, 18), "s.ray:1:1: error: ");
-  EXPECT_EQ(headError("\nfilter gauss -1").substr(0, 18), "s.ray:2:1: error: ");
+  EXPECT_EQ(errorOf("\nfilter gauss -1").substr(0, 19), "s.ray:2:14: error: ");
 }
 
 TEST(Parser, ChecksStereoPictures) {
