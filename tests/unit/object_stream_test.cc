@@ -150,8 +150,10 @@ TEST(ObjectStream, ADefinitionIsReadBackAsOftenAsItIsUsed) {
   ASSERT_EQ(both.placed.size(), 2u);
   for (int again = 0; again < 3; ++again) {
     std::vector<Item> pair, ball;
-    addDefinition(both.stream, both.placed[0].object, pair);
-    addDefinition(both.stream, both.placed[1].object, ball);
+    std::set<DefinitionId> added;
+    addDefinition(both.stream, both.placed[0].object, added, pair);
+    added.clear();
+    addDefinition(both.stream, both.placed[1].object, added, ball);
     auto objects = [](const std::vector<Item>& items) {
       return std::count_if(items.begin(), items.end(),
                            [](const Item& i) { return std::holds_alternative<SceneObject>(i); });
