@@ -10,7 +10,7 @@ namespace rayshade {
 
 namespace {
 
-constexpr std::int32_t kLargestDepth = 10'000;
+constexpr std::int32_t kLargestDepth = 100'000'000;  // memory ends before
 constexpr double kHuge = 1e9;
 
 }  // namespace
