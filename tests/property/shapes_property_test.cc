@@ -318,6 +318,27 @@ TYPED_TEST(EveryShape, TheNextRootIsLargerAndRootsDoNotDependOnTheQuestion) {
     ASSERT_EQ(shape.intersect(ray, justBefore), t);  // and asking has changed nothing
   });
 }
+// What calls itself solid is entered and left in turn by a ray from outside, as CSG has it.
+TYPED_TEST(EveryShape, ASolidIsEnteredAndLeftInTurn) {
+  if (!TypeParam::solid || TypeParam::unbounded) return;
+  std::uint64_t seed = 70;
+  int left = 0;
+  for (const TypeParam& shape : this->subjects())
+    for (const LocalRay& ray : this->raysAt(shape, ++seed)) {
+      if (contains(padded(shape.bounds()), ray.origin)) continue;
+      bool inside = false, touched = false;
+      for (double t = 0; (t = shape.intersect(ray, t)) != kNoHit && !touched;) {
+        const double cosine = dot(shape.pointAt(ray, t).geometricNormal, ray.direction);
+        touched = std::abs(cosine) < 1e-6;  // that may be either, or neither
+        if (touched) continue;
+        ASSERT_EQ(cosine > 0, inside) << t;
+        left += inside;
+        inside = !inside;
+      }
+      ASSERT_TRUE(touched || !inside);
+    }
+  EXPECT_GT(left, 50);
+}
 TYPED_TEST(EveryShape, EncodingADecodedOneGivesTheSameBytes) {
   for (const TypeParam& shape : this->subjects()) {
     const Bytes bytes = encode(shape);
