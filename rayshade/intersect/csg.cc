@@ -35,8 +35,9 @@ std::optional<double> cosineAt(const Model& model, ObjectIndex index, const Loca
 
 // A crossing of a leaf.
 struct LeafCrossing {
-  double t = 0;      // world units
-  double error = 0;  // of t: two crossings that are not farther from each other coincide
+  double t = 0;       // world units
+  double error = 0;   // of the surface there, along the ray if it were square to it
+  double cosine = 0;  // between the ray and the outward normal; 0: not asked for yet
   std::uint32_t leaf = 0;
   bool entering = false;
   bool insideAfter = false;  // as the next crossing of the leaf has it
@@ -135,6 +136,8 @@ Passage passage(const Bounds& box, const LocalRay& ray) {
   return part;
 }
 
+constexpr double kLeastCosine = 0x1p-10;  // along a surface t says nothing
+
 // Finds the crossings of the leaves that a ray may meet, and from them those of the result; both as far as they are needed.
 class Crossings {
  public:
@@ -149,7 +152,7 @@ class Crossings {
   Crossing firstBeyond(double tMin) {
     // A few stretches, each four times as long as all before: what lies behind the hit is hardly looked at.
     constexpr std::size_t kFew = 8;  // leaves: they are all looked at
-    constexpr double kShares[] = {1. / 8, 1. / 2};
+    constexpr double kShares[] = {1. / 16, 1. / 4};
     const Passage whole = passage(solid_.extent, ray_);
     if (whole.from > whole.to) return {};
     if (solid_.leaves.size() > kFew && whole.to < kInfinity) {
@@ -173,9 +176,10 @@ class Crossings {
   // The first crossing beyond tMin that lies before `sure`, having looked up to `end`.
   Crossing advance(double end, double sure, double tMin) {
     find(end);
-    for (std::size_t i = 0; i < found_.size() && found_[i].t <= sure; ++i) {
-      if (found_[i].taken) continue;
-      const Crossing next = event(i);
+    const std::span<LeafCrossing> found(found_.data(), found_.size());
+    for (std::size_t i = 0; i < found.size() && found[i].t <= sure; ++i) {
+      if (found[i].taken) continue;
+      const Crossing next = event(found, i);
       if (!next.exists()) continue;
       if (!last_.exists()) {
         last_ = next;
@@ -199,7 +203,8 @@ class Crossings {
                        });
     for (Sheets& sheets : sheets_) follow(sheets, end);
     begun_ = end;
-    std::sort(found_.begin(), found_.end(), [](const LeafCrossing& a, const LeafCrossing& b) {
+    LeafCrossing* const first = found_.data();
+    std::sort(first, first + found_.size(), [](const LeafCrossing& a, const LeafCrossing& b) {
       return a.t != b.t ? a.t < b.t : a.leaf < b.leaf;
     });
   }
@@ -228,15 +233,19 @@ class Crossings {
     if constexpr (Convex<S>) {
       const double in = shape.intersect(ray, -kInfinity);
       const double out = in < kNoHit ? shape.intersect(ray, in) : kNoHit;
-      if (!(out < kNoHit) || !(in / ray.scale < out / ray.scale)) return false;  // it touches, at most
-      const auto add = [&](double root, double side) {
-        const double cosine = dot(ray.direction, shape.pointAt(ray, root).geometricNormal);
-        if (root / ray.scale > 0)
-          found_.push_back(crossing(leaf, root / ray.scale, std::copysign(cosine, side), ray));
-      };
-      add(in, -1);
-      add(out, 1);
-      return in / ray.scale <= 0 && out / ray.scale > 0;
+      const double tIn = in / ray.scale, tOut = out / ray.scale;
+      if (!(in < kNoHit) || tIn == tOut) return false;
+      if (out < kNoHit) {
+        if (tIn > 0) found_.push_back(crossing(leaf, tIn, true, 0, ray));
+        if (tOut > 0) found_.push_back(crossing(leaf, tOut, false, 0, ray));
+        return tIn <= 0 && tOut > 0;
+      }
+      if (S::solid || !(tIn > 0)) return false;  // it touches, or is behind the ray
+      const std::optional<double> cosine = crossingCosine(shape.pointAt(ray, in), ray);
+      if (!cosine) return false;
+      found_.push_back(crossing(leaf, tIn, *cosine < 0, *cosine, ray));
+      found_.back().insideAfter = false;
+      return *cosine > 0;
     } else {
       const std::size_t first = found_.size();
       double last = 0;
@@ -248,7 +257,7 @@ class Crossings {
         if (!cosine) continue;
         // A ray does not leave what it can't have been in.
         if (S::solid && *cosine > 0 && beginsOutside && found_.size() == first) continue;
-        found_.push_back(crossing(leaf, t, *cosine, ray));
+        found_.push_back(crossing(leaf, t, *cosine < 0, *cosine, ray));
         if (found_.size() > first + 1) found_[found_.size() - 2].insideAfter = !found_.back().entering;
       }
       if (found_.size() > first) {
@@ -264,18 +273,30 @@ class Crossings {
   void begin(const Solid::Leaf& at, std::uint32_t leaf, double t, bool inside) {
     if (!inside) return;
     if (t == 0) return now_.change(at.place, true);
-    LeafCrossing silent{t, 0, leaf, true, true};
+    LeafCrossing silent{t, 0, 1, leaf, true, true};
     silent.silent = true;
     found_.push_back(silent);
   }
 
-  // `cosine` between the ray and the outward normal.
-  LeafCrossing crossing(std::uint32_t leaf, double t, double cosine, const LocalRay& ray) {
-    constexpr double kLeast = 0x1p-10;  // along a surface t says nothing
+  LeafCrossing crossing(std::uint32_t leaf, double t, bool entering, double cosine, const LocalRay& ray) {
     const double off = 8 * kRounding * (maxAbs(ray.origin) + t * ray.scale) + solid_.leaves[leaf].tolerance;
-    const double error = off / (std::max(std::abs(cosine), kLeast) * ray.scale);
-    longest_ = std::max(longest_, error);
-    return {t, error, leaf, std::signbit(cosine), std::signbit(cosine)};
+    worst_ = std::max(worst_, off / ray.scale);
+    return {t, off / ray.scale, cosine, leaf, entering, entering};
+  }
+
+  // The error of a crossing's t: two that are not farther from each other coincide.  The cosine is found when it is asked for,
+  // which is seldom: most crossings are alone.
+  double slack(LeafCrossing& crossing) {
+    if (crossing.cosine == 0) {
+      const std::uint32_t step = solid_.leaves[crossing.leaf].step;
+      const ObjectIndex object = solid_.steps[step].object;
+      const LocalRay ray = rays_.at(step);
+      const double root = rootAt(model_, {object, ray}, crossing.t);
+      crossing.cosine = withShape(model_.store(), model_.store().object(object), [&](const auto& shape) {
+        return dot(ray.direction, shape.pointAt(ray, root).geometricNormal);
+      });
+    }
+    return crossing.error / std::max(std::abs(crossing.cosine), kLeastCosine);
   }
 
   std::optional<LeafCrossing> nextSheet(std::uint32_t leaf, const LocalRay& ray, double tMin) {
@@ -283,7 +304,7 @@ class Crossings {
       const Hit hit = nearestHit(model_, *solid_.leaves[leaf].sheets, ray, moment_, tMin, kNoHit);
       if (!hit.found()) return std::nullopt;
       const std::optional<double> cosine = cosineAt(model_, hit.object, ray, moment_, hit.t);
-      if (cosine) return crossing(leaf, hit.t, *cosine, ray);
+      if (cosine) return crossing(leaf, hit.t, *cosine < 0, *cosine, ray);
       tMin = hit.t;
     }
   }
@@ -298,21 +319,22 @@ class Crossings {
   }
 
   // The crossing of the result, if there is one, where that of a leaf is and all that coincide with it.
-  Crossing event(std::size_t begin) {
-    if (found_[begin].silent) {
-      found_[begin].taken = true;
-      now_.change(solid_.leaves[found_[begin].leaf].place, true);
+  Crossing event(std::span<LeafCrossing> found, std::size_t begin) {
+    if (found[begin].silent) {
+      found[begin].taken = true;
+      now_.change(solid_.leaves[found[begin].leaf].place, true);
       return {};
     }
     const Insides before = now_;
     InlineVector<std::size_t, 4> together;
-    const double t = found_[begin].t, error = found_[begin].error;
-    for (std::size_t i = begin; i < found_.size() && found_[i].t - t <= error + longest_; ++i) {
-      LeafCrossing& crossing = found_[i];
-      if (crossing.taken || crossing.silent || found_[i].t - t > error + crossing.error) continue;
+    const double t = found[begin].t, farthest = t + 2 * worst_ / kLeastCosine;
+    for (std::size_t i = begin; i < found.size() && found[i].t <= farthest; ++i) {
+      LeafCrossing& crossing = found[i];
+      if (crossing.taken || crossing.silent) continue;
+      if (i != begin && crossing.t - t > slack(found[begin]) + slack(crossing)) continue;
       // A leaf may be crossed twice there: then one event follows the other.
       if (std::any_of(together.begin(), together.end(),
-                      [&](std::size_t k) { return found_[k].leaf == crossing.leaf; }))
+                      [&](std::size_t k) { return found[k].leaf == crossing.leaf; }))
         continue;
       crossing.taken = true;
       together.push_back(i);
@@ -321,13 +343,13 @@ class Crossings {
     Crossing result;
     if (now_.inside(0) != before.inside(0)) {
       for (std::size_t i : together) {
-        const LeafCrossing& crossing = found_[i];
+        const LeafCrossing& crossing = found[i];
         if ((result.exists() && crossing.leaf > result.leaf) || !turned(crossing, before)) continue;
         result = {crossing.t, crossing.leaf, now_.inside(0)};
       }
     }
     for (std::size_t i : together) {
-      const LeafCrossing& crossing = found_[i];
+      const LeafCrossing& crossing = found[i];
       if (crossing.insideAfter != crossing.entering)
         now_.change(solid_.leaves[crossing.leaf].place, crossing.insideAfter);
     }
@@ -348,11 +370,11 @@ class Crossings {
   const Moment& moment_;
   LocalRays rays_;
   Insides now_;
-  InlineVector<LeafCrossing, 8> found_;
+  InlineVector<LeafCrossing, 24> found_;
   InlineVector<Sheets, 1> sheets_;
-  double longest_ = 0;  // error of a crossing
-  double begun_ = -1;   // what begins until here is known
-  Crossing last_;       // not given out yet
+  double worst_ = 0;   // error of a crossing
+  double begun_ = -1;  // what begins until here is known
+  Crossing last_;      // not given out yet
 };
 
 }  // namespace

@@ -15,7 +15,7 @@ struct Cone {
 
   static constexpr std::string_view keyword = "cone";
   static constexpr Aliases<> aliases{};
-  static constexpr bool flat = false, unbounded = false, solid = false;
+  static constexpr bool flat = false, unbounded = false, solid = false, convex = true;
   static constexpr std::string_view examples[] = {"1  0 0 0  0  0 0 1", "0.5  1 2 3  2  4 -1e2 6",
                                                   "1  0 0 0  1  0 2 0"};
 

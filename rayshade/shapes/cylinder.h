@@ -14,7 +14,7 @@ struct Cylinder {
 
   static constexpr std::string_view keyword = "cylinder";
   static constexpr Aliases<> aliases{};
-  static constexpr bool flat = false, unbounded = false, solid = false;
+  static constexpr bool flat = false, unbounded = false, solid = false, convex = true;
   static constexpr std::string_view examples[] = {"1  0 0 0  0 0 1", "0.25  1 2 3  -4 1e2 6"};
 
   static std::optional<Cylinder> parse(Arguments& in) {

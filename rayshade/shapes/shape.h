@@ -25,7 +25,8 @@
 //
 // If it has them:
 //
-//   convex           true: a ray is inside between its first root, from minus infinity on, and its second one, if it has two
+//   convex           true: it bounds a convex body, or part of it: a ray enters at the first of two roots, from minus infinity
+//                    on, and leaves at the second; if it is solid a single root only touches
 //   inside           of a point, if solid and unbounded: a ray need not cross such a shape to be inside of it
 //   flipped          the same with its normals turned around, for option -f
 //   beginsWithFile   true: the first argument is the name of a file, which the parser has to tell from that of a
