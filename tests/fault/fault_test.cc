@@ -14,6 +14,7 @@
 #include "tests/support/random.h"
 #include "tests/support/random_scene.h"
 #include "tests/support/render_text.h"
+#include "tests/support/seeded_random.h"
 
 namespace rayshade {
 namespace {
@@ -78,7 +79,7 @@ HostOptions randomHost(std::uint64_t seed) {
 
 TEST(Fault, DeathsAtAnyMoveWithLossOfLastWordsLeaveThePictureAsItIs) {
   const auto& [job, expected] = glassAndMirrors();
-  const std::uint64_t seeds = numberFromEnvironment("RAYSHADE_TEST_SEEDS", 400);
+  const std::uint64_t seeds = seedCount(400);
   std::uint64_t deaths = 0, successions = 0, reissued = 0;
   for (std::uint64_t seed = 0; seed < seeds; ++seed) {
     SimulatedMachine::Options machine;
@@ -98,7 +99,7 @@ TEST(Fault, DeathsAtAnyMoveWithLossOfLastWordsLeaveThePictureAsItIs) {
 
 TEST(Fault, HangsAreNoticedAndReplaced) {
   const auto& [job, expected] = glassAndMirrors();
-  const std::uint64_t seeds = numberFromEnvironment("RAYSHADE_TEST_SEEDS", 60);
+  const std::uint64_t seeds = seedCount(60);
   int hangs = 0;
   for (std::uint64_t seed = 0; seed < seeds; ++seed) {
     SimulatedMachine::Options machine;
@@ -114,7 +115,7 @@ TEST(Fault, HangsAreNoticedAndReplaced) {
 }
 
 TEST(Fault, RandomScenesSurviveRandomDeaths) {
-  const std::uint64_t seeds = numberFromEnvironment("RAYSHADE_TEST_SEEDS", 40);
+  const std::uint64_t seeds = seedCount(40);
   for (std::uint64_t seed = 0; seed < seeds; ++seed) {
     const Job job = jobOfText(randomScene(10000 + seed));
     SimulatedMachine::Options machine;

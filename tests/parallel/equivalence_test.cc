@@ -10,6 +10,7 @@
 #include "tests/support/random.h"
 #include "tests/support/random_scene.h"
 #include "tests/support/render_text.h"
+#include "tests/support/seeded_random.h"
 #include "tests/support/suite.h"
 
 namespace rayshade {
@@ -68,7 +69,7 @@ void expectSameWork(const TraceCounts& sequential, const TraceCounts& tasks) {
 }
 
 TEST(Equivalence, RandomScenesHaveTheSameBitsHoweverTheyAreSplit) {
-  const std::uint64_t seeds = numberFromEnvironment("RAYSHADE_TEST_SEEDS", 60);
+  const std::uint64_t seeds = seedCount(60);
   std::uint64_t colourful = 0;
   for (std::uint64_t seed = 0; seed < seeds; ++seed) {
     SCOPED_TRACE("scene seed " + std::to_string(seed));

@@ -9,6 +9,7 @@
 #include "tests/support/random.h"
 #include "tests/support/random_scene.h"
 #include "tests/support/render_text.h"
+#include "tests/support/seeded_random.h"
 #include "tests/support/suite.h"
 
 namespace rayshade {
@@ -45,7 +46,7 @@ HostOptions randomSchedule(std::uint64_t seed) {
 }
 
 TEST(Schedules, AnyPolicyAnyHorizonAnyCacheGivesTheSameBits) {
-  const std::uint64_t seeds = numberFromEnvironment("RAYSHADE_TEST_SEEDS", 60);
+  const std::uint64_t seeds = seedCount(60);
   std::uint64_t pyramidRays = 0, forwarded = 0, evicted = 0, shadowCells = 0;
   for (std::uint64_t seed = 0; seed < seeds; ++seed) {
     SCOPED_TRACE("scene seed " + std::to_string(seed));
@@ -74,7 +75,7 @@ TEST(Schedules, AnyPolicyAnyHorizonAnyCacheGivesTheSameBits) {
 }
 
 TEST(Schedules, DeathsOfAnyKindOfTaskLeaveThePictureAsItIs) {
-  const std::uint64_t seeds = numberFromEnvironment("RAYSHADE_TEST_SEEDS", 60);
+  const std::uint64_t seeds = seedCount(60);
   int deaths = 0;
   for (std::uint64_t seed = 0; seed < seeds; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));

@@ -238,15 +238,9 @@ bool same(const std::vector<Crossed>& a, const std::vector<Crossed>& b) {
   });
 }
 
-// 10 000 trees when RAYSHADE_TEST_SEEDS says so.
-std::uint64_t treeCount() {
-  const char* asked = std::getenv("RAYSHADE_TEST_SEEDS");
-  return asked != nullptr ? std::strtoull(asked, nullptr, 10) : 1000;
-}
-
 TEST(Csg, RandomTreesAreTheBooleanOfTheirLeaves) {
   int crossings = 0, judged = 0;
-  for (std::uint64_t seed = 0; seed < treeCount(); ++seed) {
+  for (std::uint64_t seed = 0; seed < seedCount(1000); ++seed) {
     SeededRandom random(seed);
     std::unique_ptr<Tree> tree;
     do {
@@ -286,8 +280,8 @@ TEST(Csg, RandomTreesAreTheBooleanOfTheirLeaves) {
       }
     }
   }
-  EXPECT_GT(crossings, 10000);
-  EXPECT_GT(judged, 100000);
+  EXPECT_GT(crossings, static_cast<int>(10 * seedCount(1000)));
+  EXPECT_GT(judged, static_cast<int>(100 * seedCount(1000)));
 }
 
 }  // namespace

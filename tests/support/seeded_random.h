@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <string>
 
 #include "tests/support/random.h"
@@ -18,5 +19,11 @@ class SeededRandom : public Random {
  private:
   testing::ScopedTrace trace_;
 };
+
+// How many seeds a test goes through: RAYSHADE_TEST_SEEDS says it for all of them.
+inline std::uint64_t seedCount(std::uint64_t usual) {
+  const char* asked = std::getenv("RAYSHADE_TEST_SEEDS");
+  return asked != nullptr ? std::strtoull(asked, nullptr, 10) : usual;
+}
 
 }  // namespace rayshade
