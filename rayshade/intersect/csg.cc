@@ -155,6 +155,7 @@ class Crossings {
     constexpr double kShares[] = {1. / 16, 1. / 4};
     const Passage whole = passage(solid_.extent, ray_);
     if (whole.from > whole.to) return {};
+    start_ = whole.from;
     if (solid_.leaves.size() > kFew && whole.to < kInfinity) {
       for (const double share : kShares) {
         const double length = share * (whole.to - whole.from);
@@ -197,7 +198,7 @@ class Crossings {
   void find(double end) {
     double limit = end * ray_.scale;
     const std::span<const std::uint32_t> order = solid_.bvh.order();
-    solid_.bvh.nearest(ray_.origin, ray_.direction, std::max(begun_, 0.0) * ray_.scale, limit,
+    solid_.bvh.nearest(ray_.origin, ray_.direction, std::max(begun_, start_) * ray_.scale, limit,
                        [&](std::uint32_t first, std::uint32_t count) {
                          for (std::uint32_t leaf : order.subspan(first, count)) findIn(leaf, end);
                        });
@@ -212,7 +213,7 @@ class Crossings {
   void findIn(std::uint32_t leaf, double end) {
     const Solid::Leaf& at = solid_.leaves[leaf];
     const Passage part = at.endless ? Passage{} : passage(at.bounds, ray_);
-    if (part.from > part.to || part.from > end || part.from <= begun_) return;
+    if (part.from > part.to || part.from > end || part.from <= begun_ || part.to < start_) return;
     const LocalRay ray = rays_.at(at.step);
     if (!(ray.scale > 0)) return;
     if (at.sheets != nullptr) {
@@ -373,6 +374,7 @@ class Crossings {
   InlineVector<LeafCrossing, 24> found_;
   InlineVector<Sheets, 1> sheets_;
   double worst_ = 0;   // error of a crossing
+  double start_ = 0;   // what ends before that is of no interest: the ray is outside of the result
   double begun_ = -1;  // what begins until here is known
   Crossing last_;      // not given out yet
 };
