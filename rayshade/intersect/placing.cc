@@ -46,8 +46,9 @@ PlacedPoint placedPoint(const Model& model, const HitPath& path, const Ray& ray,
   for (std::size_t i = path.steps.size(); i-- > 0;) {
     const NodeIndex node = store.object(path.steps[i].object).node;
     if (store.node(node).identity) continue;
+    const Affine map = mapAt(store, node, ray.moment).value_or(Affine{});
+    at.toWorld = nodes.empty() ? map : then(at.toWorld, map);
     nodes.push_back(node);
-    at.toWorld = then(at.toWorld, mapAt(store, node, ray.moment).value_or(Affine{}));
   }
   at.placed = !nodes.empty() && !isIdentity(at.toWorld);
   at.position = at.placed ? mapPoint(at.toWorld.forward, at.shape.position) : at.shape.position;
