@@ -49,16 +49,6 @@ class Testers {
   std::vector<RayIntersector> intersectors_;  // made when the first object comes that needs them
 };
 
-bool standsBeforeEnd(const Model& model, const Segment& segment, const Target& target, double t) {
-  if (t < sureUntil(segment.ray.origin, segment.tMax)) [[likely]]
-    return true;
-  Ray ray;
-  ray.origin = segment.ray.origin;
-  ray.direction = segment.ray.direction;
-  ray.moment = segment.moment;
-  return !endsIn(model, ray, {t, target.object}, segment.tMax);
-}
-
 }  // namespace
 
 void nearestHits(const Model& model, const Region& region, std::span<Segment> segments, std::span<Hit> hits,
@@ -101,7 +91,9 @@ void occlusions(const Model& model, const Region& region, std::span<Segment> seg
         testers.test(target, asking & ~stopped & ~(target.opaque ? 0 : filtered),
                      [&](std::size_t i, double t) {
                        ++met[i].tests;
-                       if (t < segments[i].tMax && standsBeforeEnd(model, segments[i], target, t))
+                       if (t < segments[i].tMax &&
+                           standsBefore(model, segments[i].ray.origin, segments[i].ray.direction,
+                                        segments[i].moment, {t, target.object}, segments[i].tMax))
                          (target.opaque ? stopped : filtered) |= RaySet{1} << i;
                      });
       }

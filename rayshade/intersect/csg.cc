@@ -20,17 +20,13 @@ std::optional<double> cosineAt(const Model& model, ObjectIndex index, const Loca
   const SceneStore& store = model.store();
   const PlacedObject& object = store.object(index);
   const LocalRay ray = intoNode(store, object.node, outer, moment);
-  const double before = std::nextafter(t, -kInfinity);
   if (object.kind == kCsgKind)
-    return firstCrossing(model, model.solid(object.body), ray, moment, before).entering ? -1 : 1;
+    return crossingAt(model, model.solid(object.body), ray, moment, t).entering ? -1 : 1;
   if (object.kind == kInstanceKind) {
-    const Hit inside = nearestHit(model, model.definition(store.instance(object)), ray, moment, before,
-                                  std::nextafter(t, kInfinity));
+    const Hit inside = hitAt(model, model.definition(store.instance(object)), ray, moment, t);
     return inside.found() ? cosineAt(model, inside.object, ray, moment, t) : std::nullopt;
   }
-  const double root = rootAt(model, {index, ray}, t);
-  return withShape(store, object,
-                   [&](const auto& shape) { return crossingCosine(shape.pointAt(ray, root), ray); });
+  return crossingCosine(pointAt(model, {index, ray}, t), ray);
 }
 
 // A crossing of a leaf.
@@ -290,12 +286,8 @@ class Crossings {
   double slack(LeafCrossing& crossing) {
     if (crossing.cosine == 0) {
       const std::uint32_t step = solid_.leaves[crossing.leaf].step;
-      const ObjectIndex object = solid_.steps[step].object;
-      const LocalRay ray = rays_.at(step);
-      const double root = rootAt(model_, {object, ray}, crossing.t);
-      crossing.cosine = withShape(model_.store(), model_.store().object(object), [&](const auto& shape) {
-        return dot(ray.direction, shape.pointAt(ray, root).geometricNormal);
-      });
+      const PathStep shape{solid_.steps[step].object, rays_.at(step)};
+      crossing.cosine = dot(shape.ray.direction, pointAt(model_, shape, crossing.t).geometricNormal);
     }
     return crossing.error / std::max(std::abs(crossing.cosine), kLeastCosine);
   }
@@ -384,6 +376,11 @@ class Crossings {
 Crossing firstCrossing(const Model& model, const Solid& solid, const LocalRay& ray, const Moment& moment,
                        double tMin) {
   return Crossings(model, solid, ray, moment).firstBeyond(tMin);
+}
+
+Crossing crossingAt(const Model& model, const Solid& solid, const LocalRay& ray, const Moment& moment,
+                    double t) {
+  return firstCrossing(model, solid, ray, moment, std::nextafter(t, -kInfinity));
 }
 
 }  // namespace rayshade

@@ -26,5 +26,8 @@ struct Crossing {
 // The first crossing of the result with t > tMin >= 0; `ray` in the space of the operands' definition.
 Crossing firstCrossing(const Model& model, const Solid& solid, const LocalRay& ray, const Moment& moment,
                        double tMin);
+// The one at t, where a ray has been found to cross.
+Crossing crossingAt(const Model& model, const Solid& solid, const LocalRay& ray, const Moment& moment,
+                    double t);
 
 }  // namespace rayshade

@@ -190,9 +190,7 @@ HitPath pathTo(const Model& model, const Ray& ray, const Hit& hit) {
   };
   // Goes on among the objects of a region.  False: nothing is there.
   const auto enter = [&](const Region& region, ObjectIndex& index) {
-    index = nearestHit(model, region, outer, ray.moment, std::nextafter(hit.t, -kInfinity),
-                       std::nextafter(hit.t, kInfinity))
-                .object;
+    index = hitAt(model, region, outer, ray.moment, hit.t).object;
     return index != kNone;
   };
   for (ObjectIndex index = hit.object;;) {
@@ -202,8 +200,7 @@ HitPath pathTo(const Model& model, const Ray& ray, const Hit& hit) {
       if (!enter(model.definition(store.instance(object)), index)) break;
     } else if (object.kind == kCsgKind) {
       const Solid& solid = model.solid(object.body);
-      const Crossing crossing =
-          firstCrossing(model, solid, outer, ray.moment, std::nextafter(hit.t, -kInfinity));
+      const Crossing crossing = crossingAt(model, solid, outer, ray.moment, hit.t);
       if (!crossing.exists()) break;
       // What an outer operation says about the crossing holds: it was made from what the inner one said.
       if (!path.entering) path.entering = crossing.entering;
@@ -217,15 +214,15 @@ HitPath pathTo(const Model& model, const Ray& ray, const Hit& hit) {
   return path;
 }
 
-double rootAt(const Model& model, const PathStep& step, double t) {
-  const PlacedObject& object = model.store().object(step.object);
-  // Then t is the shape's own root: no rounding lies between the two.
-  if (step.ray.scale == 1) return t;
-  return withShape(model.store(), object, [&](const auto& shape) {
+ShapePoint pointAt(const Model& model, const PathStep& step, double t) {
+  return withShape(model.store(), model.store().object(step.object), [&](const auto& shape) {
+    // Then t is the shape's own root: no rounding lies between the two.
+    if (step.ray.scale == 1) return shape.pointAt(step.ray, t);
     const double local = t * step.ray.scale;
     // A few ulps below: t came from this root by a division.
     const double root = shape.intersect(step.ray, local - std::abs(local) * 4 * kRounding);
-    return root < kNoHit && root <= local + std::abs(local) * 4 * kRounding ? root : local;
+    return shape.pointAt(step.ray,
+                         root < kNoHit && root <= local + std::abs(local) * 4 * kRounding ? root : local);
   });
 }
 

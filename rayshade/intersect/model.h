@@ -114,8 +114,8 @@ struct HitPath {
 };
 HitPath pathTo(const Model& model, const Ray& ray, const Hit& hit);
 
-// The local t of the root that is `t` world units along the ray; the shape's own, exact root.
-double rootAt(const Model& model, const PathStep& step, double t);
+// What is `t` world units along the ray, where it meets the shape of a step; from the shape's own, exact root.
+ShapePoint pointAt(const Model& model, const PathStep& step, double t);
 
 // The ray in the space inside a node, `outer` being the ray in the space of the node's container.  A node that has shrunk to nothing
 // at the moment has no inside: then its scale is 0, and it meets nothing.

@@ -22,13 +22,10 @@ double placedError(const ShapePoint& point, Vec3 normal, const Matrix& inside, V
 
 }  // namespace
 
-Vec3 errorOfWay(const SceneStore& store, std::span<const NodeIndex> nodes, const Moment& moment, Vec3 local,
-                Vec3 outside) {
+Vec3 errorOfWay(std::span<const Affine> maps, Vec3 local, Vec3 outside) {
   Vec3 point = outside, error = kRounding * absolute(outside);
-  for (std::size_t i = nodes.size(); i-- > 0;) {
-    const std::optional<Affine> map = mapAt(store, nodes[i], moment);
-    if (!map) return {kInfinity, kInfinity, kInfinity};
-    const Matrix& in = map->inverse;
+  for (std::size_t i = maps.size(); i-- > 0;) {
+    const Matrix& in = maps[i].inverse;
     const Matrix sizes = absolute(in);
     error = mapVector(sizes, error) + kRounding * mapPoint(sizes, absolute(point));
     point = mapPoint(in, point);
@@ -38,36 +35,36 @@ Vec3 errorOfWay(const SceneStore& store, std::span<const NodeIndex> nodes, const
 
 PlacedPoint placedPoint(const Model& model, const HitPath& path, const Ray& ray, double t) {
   const SceneStore& store = model.store();
-  const PathStep& last = path.steps.back();
   PlacedPoint at;
-  at.shape = withShape(store, store.object(last.object),
-                       [&](const auto& shape) { return shape.pointAt(last.ray, rootAt(model, last, t)); });
-  InlineVector<NodeIndex, 8> nodes;  // that change the space, from the shape outwards
+  at.shape = pointAt(model, path.steps.back(), t);
+  InlineVector<Affine, 4> maps;  // from the shape outwards
   for (std::size_t i = path.steps.size(); i-- > 0;) {
     const NodeIndex node = store.object(path.steps[i].object).node;
     if (store.node(node).identity) continue;
-    const Affine map = mapAt(store, node, ray.moment).value_or(Affine{});
-    at.toWorld = nodes.empty() ? map : then(at.toWorld, map);
-    nodes.push_back(node);
+    maps.push_back(mapAt(store, node, ray.moment).value_or(Affine{}));
+    at.toWorld = maps.size() == 1 ? maps.back() : then(at.toWorld, maps.back());
   }
-  at.placed = !nodes.empty() && !isIdentity(at.toWorld);
+  at.placed = !maps.empty() && !isIdentity(at.toWorld);
   at.position = at.placed ? mapPoint(at.toWorld.forward, at.shape.position) : at.shape.position;
   at.geometricNormal = at.placed ? normalize(mapNormal(at.toWorld.inverse, at.shape.geometricNormal))
                                  : at.shape.geometricNormal;
   at.error = at.shape.error;
-  if (!nodes.empty())
-    at.error = placedError(
-        at.shape, at.geometricNormal, at.toWorld.inverse,
-        errorOfWay(store, {nodes.data(), nodes.size()}, ray.moment, at.shape.position, at.position));
+  if (!maps.empty())
+    at.error = placedError(at.shape, at.geometricNormal, at.toWorld.inverse,
+                           errorOfWay({maps.data(), maps.size()}, at.shape.position, at.position));
   at.error += kRounding * maxAbs(at.position);
   return at;
 }
 
-bool endsIn(const Model& model, const Ray& ray, const Hit& hit, double end) {
+bool endsIn(const Model& model, Vec3 origin, Vec3 direction, const Moment& moment, const Hit& hit,
+            double end) {
+  Ray ray;
+  ray.origin = origin;
+  ray.direction = direction;
+  ray.moment = moment;
   const PlacedPoint at = placedPoint(model, pathTo(model, ray, hit), ray, hit.t);
-  const double behind = (end - hit.t) * std::abs(dot(ray.direction, at.geometricNormal));
-  return behind <=
-         2 * at.error + 12 * kRounding * (maxAbs(ray.origin) + maxAbs(ray.origin + end * ray.direction));
+  const double behind = (end - hit.t) * std::abs(dot(direction, at.geometricNormal));
+  return behind <= 2 * at.error + 12 * kRounding * (maxAbs(origin) + maxAbs(origin + end * direction));
 }
 
 }  // namespace rayshade

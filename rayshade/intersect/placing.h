@@ -18,10 +18,9 @@
 
 namespace rayshade {
 
-// For a point of an object inside of `nodes` (innermost first): at most how far from `local` a ray finds itself that starts where it
-// is in the space outside of all of them, which is `outside`; by axis of the inner space.
-Vec3 errorOfWay(const SceneStore& store, std::span<const NodeIndex> nodes, const Moment& moment, Vec3 local,
-                Vec3 outside);
+// For a point of an object inside of several spaces, whose maps lead outwards (the innermost first): at most how far from `local` a
+// ray finds itself that starts where it is outside of all of them, at `outside`; by axis of the inner space.
+Vec3 errorOfWay(std::span<const Affine> maps, Vec3 local, Vec3 outside);
 
 struct PlacedPoint {
   ShapePoint shape;  // in the shape's space
@@ -37,9 +36,15 @@ PlacedPoint placedPoint(const Model& model, const HitPath& path, const Ray& ray,
 
 // A light may lie in a surface, or on it; both have roundings, so who asks whether the surface is in front of the light has to know
 // them.  Does a ray that ends at `end` end in what it meets a little before, at hit.t, and not behind it?
-bool endsIn(const Model& model, const Ray& ray, const Hit& hit, double end);
+bool endsIn(const Model& model, Vec3 origin, Vec3 direction, const Moment& moment, const Hit& hit,
+            double end);
 
-// Only hits behind this need to be asked that.
-inline double sureUntil(Vec3 origin, double end) { return end * (1 - 0x1p-10) - 0x1p-20 * maxAbs(origin); }
+// Does what a ray meets before `end`, where a light is, stand before the light?  Only what is met near the end needs to be looked at.
+inline bool standsBefore(const Model& model, Vec3 origin, Vec3 direction, const Moment& moment,
+                         const Hit& hit, double end) {
+  if (hit.t < end * (1 - 0x1p-10) - 0x1p-20 * maxAbs(origin)) [[likely]]
+    return true;
+  return !endsIn(model, origin, direction, moment, hit, end);
+}
 
 }  // namespace rayshade

@@ -71,4 +71,8 @@ Hit nearestHit(const Model& model, const Region& region, const LocalRay& ray, co
   return best;
 }
 
+Hit hitAt(const Model& model, const Region& region, const LocalRay& ray, const Moment& moment, double t) {
+  return nearestHit(model, region, ray, moment, std::nextafter(t, -kInfinity), std::nextafter(t, kInfinity));
+}
+
 }  // namespace rayshade

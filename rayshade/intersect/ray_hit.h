@@ -65,4 +65,7 @@ class RayIntersector {
 Hit nearestHit(const Model& model, const Region& region, const LocalRay& ray, const Moment& moment,
                double tMin, double tExit);
 
+// The one at exactly t, of several there the one that is taken.
+Hit hitAt(const Model& model, const Region& region, const LocalRay& ray, const Moment& moment, double t);
+
 }  // namespace rayshade

@@ -72,9 +72,10 @@ class SolidBuilder {
     } else if (object.kind == kInstanceKind) {
       list(store.instance(object), place, step);
     } else {
-      leaf(place, step, nullptr, withShape(store, object, [](const auto& shape) { return shape.bounds(); }));
-      solid_.leaves.back().endless =
-          withShape(store, object, []<class S>(const S&) { return S::solid && S::unbounded; });
+      withShape(store, object, [&]<class S>(const S& shape) {
+        leaf(place, step, nullptr, shape.bounds(), S::solid && S::unbounded);
+        return 0;
+      });
     }
   }
 
@@ -157,39 +158,47 @@ class SolidBuilder {
   }
 
   // `bounds` in the space of the step.
-  void leaf(Solid::Place place, std::uint32_t step, const Region* sheets, Bounds bounds) {
+  void leaf(Solid::Place place, std::uint32_t step, const Region* sheets, Bounds bounds,
+            bool endless = false) {
     ++solid_.operations[place.operation].operands;
     const double off = tolerance(step, bounds);
     for (std::uint32_t s = step; s != kNone; s = solid_.steps[s].outer)
       bounds = model_.placedBoundsOf(bounds, model_.store().object(solid_.steps[s].object).node);
-    solid_.leaves.push_back({place, step, bounds, sheets, false, off});
+    solid_.leaves.push_back({place, step, bounds, sheets, endless, off});
   }
 
   // Asked for the corners of what is at the step, at both ends of the exposure.
   double tolerance(std::uint32_t step, const Bounds& bounds) const {
-    const SceneStore& store = model_.store();
-    InlineVector<NodeIndex, 8> nodes;  // from the leaf outwards
-    for (std::uint32_t s = step; s != kNone; s = solid_.steps[s].outer) {
-      const NodeIndex node = store.object(solid_.steps[s].object).node;
-      if (!store.node(node).identity) nodes.push_back(node);
-    }
     double most = 0;
     for (const double time : {exposure_.opens, exposure_.closes}) {
-      const Moment moment{time, exposure_.frame};
-      for (int corner = 0; corner < 8 && !nodes.empty(); ++corner) {
+      const std::vector<Affine> maps = mapsFrom(step, {time, exposure_.frame});
+      for (int corner = 0; corner < 8 && !maps.empty(); ++corner) {
         Vec3 point;
         for (int axis = 0; axis < 3; ++axis) {
           const double side = (corner >> axis & 1) != 0 ? bounds.high[axis] : bounds.low[axis];
           point[axis] = std::isfinite(side) ? side : 0;
         }
         Vec3 outside = point;
-        for (NodeIndex node : nodes)
-          if (const auto map = mapAt(store, node, moment)) outside = mapPoint(map->forward, outside);
-        const double error = maxAbs(errorOfWay(store, {nodes.data(), nodes.size()}, moment, point, outside));
+        for (const Affine& map : maps) outside = mapPoint(map.forward, outside);
+        const double error = maxAbs(errorOfWay(maps, point, outside));
         if (std::isfinite(error)) most = std::max(most, error);
       }
     }
     return most;
+  }
+
+  // From a step outwards; none if it is nowhere then.
+  std::vector<Affine> mapsFrom(std::uint32_t step, const Moment& moment) const {
+    const SceneStore& store = model_.store();
+    std::vector<Affine> maps;
+    for (std::uint32_t s = step; s != kNone; s = solid_.steps[s].outer) {
+      const NodeIndex node = store.object(solid_.steps[s].object).node;
+      if (store.node(node).identity) continue;
+      const std::optional<Affine> map = mapAt(store, node, moment);
+      if (!map) return {};
+      maps.push_back(*map);
+    }
+    return maps;
   }
 
   const Model& model_;

@@ -24,8 +24,8 @@ void filterShadows(LocalSpace& space, std::vector<OpenShadow>& open, const Scene
     for (std::size_t i = 0; i < count; ++i) {
       if (!hits[i].found()) continue;
       const ShadowRay& shadow = going[i]->shadow;
-      if (hits[i].t >= sureUntil(shadow.ray.origin, shadow.distance) &&
-          endsIn(*models[i], shadow.ray, hits[i], shadow.distance))
+      if (!standsBefore(*models[i], shadow.ray.origin, shadow.ray.direction, shadow.ray.moment, hits[i],
+                        shadow.distance))
         continue;
       if (passSurface(*models[i], hits[i], going[i]->shadow, settings)) {
         going[left++] = going[i];
