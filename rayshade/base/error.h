@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 namespace rayshade {
 
@@ -21,6 +22,21 @@ inline std::string describe(const SourcePlace& place) {
   if (place.line != 0) text += ":" + std::to_string(place.line);
   if (place.column != 0) text += ":" + std::to_string(place.column);
   return text;
+}
+
+// A line of a scene as a message shows it: what could move a terminal's cursor is replaced.
+inline std::string printable(std::string_view line) {
+  std::string shown(line);
+  for (char& c : shown)
+    if (c != '\t' && (c < ' ' || c > '~')) c = '?';
+  return shown;
+}
+// What goes below it, so that a caret stands behind `before`.
+inline std::string caretBehind(std::string_view before) {
+  std::string line(before);
+  for (char& c : line)
+    if (c != '\t') c = ' ';
+  return line + "^";
 }
 
 // Bad input.  what() is complete lines, each `file:line:column: what is wrong`, without a newline at the end.

@@ -10,6 +10,8 @@
 #include <sstream>
 #include <string>
 
+#include "rayshade/base/color.h"
+
 namespace rayshade {
 
 struct Range {
@@ -24,7 +26,7 @@ inline constexpr Range kAnyWholeNumber{-2147483648.0, 2147483647.0};
 inline constexpr Range kNotNegative{0};
 inline constexpr Range kPositive{0, kAnyNumber.most, true};
 inline constexpr Range kPositiveWholeNumber{1, kAnyWholeNumber.most};
-inline constexpr Range kFactor{-1e30, 1e30};  // colours, and what they are multiplied by
+inline constexpr Range kFactor{-kMostLight, kMostLight};  // colours, and what they are multiplied by
 inline constexpr Range kShare{0, 1};
 inline constexpr Range kExponent{-1e9, 1e9};        // of a highlight
 inline constexpr Range kFieldOfView{0, 180, true};  // degrees

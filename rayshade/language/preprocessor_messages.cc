@@ -34,13 +34,9 @@ std::optional<SourcePlace> directiveThatIncludes(const std::string& name, const 
 }
 
 std::string excerpt(const std::string& line, std::uint32_t column) {
-  std::string shown = "\n  ", caret = "\n  ";
-  for (std::size_t i = 0; i < std::min(line.size(), kShown); ++i) {
-    const char c = line[i];
-    shown += c == '\t' || (c >= ' ' && c <= '~') ? c : '?';
-    if (i + 1 < column) caret += c == '\t' ? '\t' : ' ';
-  }
-  return column > kShown ? shown : shown + caret + "^";
+  const std::string shown = "\n  " + printable(line.substr(0, kShown));
+  if (column > kShown) return shown;
+  return shown + "\n  " + caretBehind(std::string_view(line).substr(0, std::max(column, 1u) - 1));
 }
 
 }  // namespace

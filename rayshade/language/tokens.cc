@@ -280,14 +280,7 @@ std::string Tokens::excerpt(const TokenPlace& place) {
   after = after.substr(0, after.find('\n'));
   if (!after.empty() && after.back() == '\r') after.remove_suffix(1);
 
-  std::string line = "  ", caret = "  ";
-  for (const char c : before) {
-    const bool tab = c == '\t';
-    line += tab || (c >= ' ' && c <= '~') ? c : '?';
-    caret += tab ? '\t' : ' ';
-  }
-  for (const char c : after) line += c == '\t' || (c >= ' ' && c <= '~') ? c : '?';
-  return line + "\n" + caret + "^\n";
+  return "  " + printable(before) + printable(after) + "\n  " + caretBehind(before) + "\n";
 }
 
 }  // namespace rayshade

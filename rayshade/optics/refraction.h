@@ -9,6 +9,7 @@
 #include <cmath>
 #include <optional>
 
+#include "rayshade/base/color.h"
 #include "rayshade/base/vec.h"
 
 namespace rayshade {
@@ -32,8 +33,7 @@ inline std::optional<Vec3> refracted(Vec3 direction, Vec3 normal, double n1, dou
 // Phong's highlight, cos(alpha)^power; no highlight with power 0 (rayshade's rule).  Bounded: where the normal is not unit
 // the cosine may be above 1.
 inline double phongLobe(double cosine, double power) {
-  constexpr double kMost = 1e30;
-  return power >= 1e-5 && cosine > 0 ? std::min(std::pow(cosine, power), kMost) : 0.0;
+  return power >= 1e-5 && cosine > 0 ? std::min(std::pow(cosine, power), kMostLight) : 0.0;
 }
 
 }  // namespace rayshade

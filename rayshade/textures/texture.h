@@ -84,7 +84,7 @@ inline void scaleAmbientAndDiffuse(Surface& surface, Color by) {
   surface.diffuse = surface.diffuse * by;
 }
 inline void scaleAmbientAndDiffuse(Surface& surface, double by) {
-  by = std::clamp(by, kFactor.least, kFactor.most);  // a fractal knows no bounds
+  by = std::clamp(by, -kMostLight, kMostLight);  // a fractal knows no bounds
   scaleAmbientAndDiffuse(surface, Color{by, by, by});
 }
 
