@@ -44,7 +44,7 @@ std::string memoryOfProcess() {
 int runProgram(const std::string& program, const std::function<int()>& work,
                const std::function<std::string()>& memory) {
   const std::string name = program + ": ";
-  auto reserve = std::make_unique<char[]>(kReserve);
+  auto reserve = std::make_unique_for_overwrite<char[]>(kReserve);
   try {
     return work();
   } catch (const SceneError& error) {  // names the scene
