@@ -5,18 +5,12 @@
 
 #include <gtest/gtest.h>
 
-#include "rayshade/language/parser.h"
+#include "tests/support/number_text.h"
 #include "tests/support/seeded_random.h"
+#include "tests/support/text_model.h"
 
 namespace rayshade {
 namespace {
-
-std::string text(double x) {
-  char buffer[40];
-  std::snprintf(buffer, sizeof buffer, " %.17g", x);
-  return buffer;
-}
-std::string text(Vec3 v) { return text(v.x) + text(v.y) + text(v.z); }
 
 // A tree, as a text and as a set of points.
 class Tree {
@@ -175,15 +169,6 @@ class Operation : public Tree {
   std::vector<std::unique_ptr<Tree>> operands_;
 };
 
-std::unique_ptr<Model> modelOf(const std::string& scene) {
-  auto model = std::make_unique<Model>();
-  ParseOptions options;
-  options.warn = options.print = [](const std::string&) {};
-  parseSceneText(scene, "s.ray", options, model->store());
-  model->prepare({});
-  return model;
-}
-
 struct Crossed {
   double t = 0;
   bool entering = true;
@@ -191,25 +176,19 @@ struct Crossed {
 };
 
 // A world with all that a ray crosses in it.
-struct World {
-  explicit World(const std::string& scene) : model(modelOf(scene)) {
-    const auto all = model->store().objectsOf(kWorld);
-    region = model->regionOf({all.begin(), all.end()});
-  }
+struct World : TextModel {
+  using TextModel::TextModel;
 
   std::vector<Crossed> crossings(const Ray& ray) const {
     std::vector<Crossed> all;
     for (double t = 0;;) {
-      const Hit hit = nearestHit(*model, region, ray, t, kInfinity);
+      const Hit hit = nearestHit(model, region, ray, t, kInfinity);
       if (!hit.found() || hit.t > 1e3) return all;  // far away rounding decides
-      const HitPath path = pathTo(*model, ray, hit);
+      const HitPath path = pathTo(model, ray, hit);
       t = hit.t;
-      all.push_back({t, path.entering.value_or(true), model->store().object(path.steps.back().object).kind});
+      all.push_back({t, path.entering.value_or(true), model.store().object(path.steps.back().object).kind});
     }
   }
-
-  std::unique_ptr<Model> model;
-  Region region;
 };
 
 Ray randomRay(Random& random) {

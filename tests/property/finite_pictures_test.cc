@@ -4,6 +4,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <map>
@@ -154,6 +155,13 @@ bool isNumber(const std::string& word) {
   return std::from_chars(word.data(), end, value).ptr == end;
 }
 
+// The scene of a trial, with other words in place of its phrase.
+std::string sceneWith(const Trial& trial, const std::vector<std::string>& words) {
+  std::string text = trial.before;
+  for (const std::string& word : words) text += " " + word;
+  return text + " " + trial.behind;
+}
+
 std::vector<std::string> wordsOf(const std::string& text) {
   std::istringstream in(text);
   return {std::istream_iterator<std::string>(in), {}};
@@ -186,13 +194,14 @@ std::string whatIsWrongWith(const std::string& text, std::string& error) {
 void expectFinite(const Trial& trial) {
   const std::vector<std::string> words = wordsOf(trial.phrase);
   std::string good;
-  EXPECT_EQ(whatIsWrongWith(trial.before + " " + trial.phrase + " " + trial.behind, good), "");
+  EXPECT_EQ(whatIsWrongWith(sceneWith(trial, words), good), "");
   EXPECT_EQ(good, "") << "the phrase itself must be right";
   for (const char* all : {"1e300", "-1e300", "1e30", "1e6", "-1e6", "1e-300"}) {  // everywhere at once
-    std::string text = trial.before;
-    for (const std::string& word : words) text += " " + (isNumber(word) ? std::string(all) : word);
+    std::vector<std::string> tried = words;
+    std::replace_if(tried.begin(), tried.end(), isNumber, all);
+    const std::string text = sceneWith(trial, tried);
     std::string error;
-    EXPECT_EQ(whatIsWrongWith(text + " " + trial.behind, error), "") << text << " " << trial.behind;
+    EXPECT_EQ(whatIsWrongWith(text, error), "") << text;
   }
   for (std::size_t at = 0; at < words.size(); ++at) {
     if (!isNumber(words[at])) continue;
@@ -202,9 +211,7 @@ void expectFinite(const Trial& trial) {
     for (std::size_t i = 0; i < values.size(); ++i) {
       std::vector<std::string> tried = words;
       tried[at] = values[i];
-      std::string text = trial.before;
-      for (const std::string& word : tried) text += " " + word;
-      text += " " + trial.behind;
+      const std::string text = sceneWith(trial, tried);
       std::string error;
       EXPECT_EQ(whatIsWrongWith(text, error), "") << text;
       // The ends of a range that an error names are tried, too.

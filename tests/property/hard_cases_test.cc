@@ -13,16 +13,11 @@
 #include "rayshade/shapes/all.h"
 #include "rayshade/space/clip_list.h"
 #include "tests/support/compare_pictures.h"
+#include "tests/support/number_text.h"
 #include "tests/support/render_text.h"
 
 namespace rayshade {
 namespace {
-
-std::string text(double x) {
-  char buffer[40];
-  std::snprintf(buffer, sizeof buffer, " %.17g ", x);
-  return buffer;
-}
 
 // One ray, from the eye to the target.
 Color colorSeen(const std::string& eye, const std::string& target, const std::string& scene) {

@@ -11,20 +11,14 @@
 #include <functional>
 
 #include "rayshade/intersect/bundle_hit.h"
-#include "rayshade/language/parser.h"
 #include "rayshade/shading/evaluate.h"
 #include "rayshade/shading/shadow.h"
+#include "tests/support/number_text.h"
 #include "tests/support/seeded_random.h"
+#include "tests/support/text_model.h"
 
 namespace rayshade {
 namespace {
-
-std::string text(double x) {
-  char buffer[40];
-  std::snprintf(buffer, sizeof buffer, " %.17g", x);
-  return buffer;
-}
-std::string text(Vec3 v) { return text(v.x) + text(v.y) + text(v.z); }
 
 // Some transforms that leave an object about where it was, and about as large.
 std::string randomChain(Random& random) {
@@ -108,15 +102,9 @@ std::string randomObject(Random& random, int depth, bool part) {
   }
 }
 
-struct Placed {
-  explicit Placed(const std::string& scene) {
-    ParseOptions options;
-    options.warn = options.print = [](const std::string&) {};
-    parseSceneText(scene, "s.ray", options, model.store());
-    model.prepare({0, 1, 0});
-    const auto all = model.store().objectsOf(kWorld);
-    region = model.regionOf({all.begin(), all.end()});
-  }
+struct Placed : TextModel {
+  explicit Placed(const std::string& scene) : TextModel(scene, {0, 1, 0}) {}
+
   bool dark(const Ray& ray, const SurfacePoint& at, Vec3 light) const {
     const Vec3 way = light - at.position;
     const LightSample sample{normalize(way), normalize(way), length(way), 1};
@@ -127,8 +115,6 @@ struct Placed {
     return met.opaque || met.transparent;
   }
 
-  Model model;
-  Region region;
   SceneSettings settings;
 };
 

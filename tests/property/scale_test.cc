@@ -9,6 +9,7 @@
 #include <cstdio>
 
 #include "tests/support/compare_pictures.h"
+#include "tests/support/number_text.h"
 #include "tests/support/random.h"
 #include "tests/support/render_text.h"
 
@@ -37,9 +38,7 @@ class ScaledScene {
     return *this;
   }
   ScaledScene& number(double x) {
-    char buffer[40];
-    std::snprintf(buffer, sizeof buffer, " %.17g", x);
-    text_ += buffer;
+    text_ += rayshade::text(x);
     return *this;
   }
   ScaledScene& length(double x) { return number(scale_ * x); }

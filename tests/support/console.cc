@@ -13,25 +13,14 @@
 #include <stdexcept>
 #include <thread>
 
+#include "rayshade/program/progress.h"
+
 namespace rayshade {
-namespace {
-
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-}  // namespace
 
 Console::Console(const std::vector<std::string>& arguments, const Program::Environment& environment) {
   pid_ = forkpty(&terminal_, nullptr, nullptr, nullptr);
   if (pid_ < 0) throw std::runtime_error("forkpty");
-  if (pid_ > 0) return;
-  for (const auto& [name, value] : environment) setenv(name.c_str(), value.c_str(), 1);
-  std::vector<char*> list;
-  for (const std::string& argument : arguments) list.push_back(const_cast<char*>(argument.c_str()));
-  list.push_back(nullptr);
-  execvp(list[0], list.data());
-  _exit(127);
+  if (pid_ == 0) becomeProgram(arguments, environment);
 }
 
 Console::~Console() {
@@ -58,10 +47,10 @@ bool Console::read(double seconds) {
 }
 
 std::string Console::hear(const std::string& text, double seconds) {
-  const double end = now() + seconds;
+  const double end = secondsNow() + seconds;
   std::size_t at;
-  while ((at = heard_.find(text)) == std::string::npos && now() < end) {
-    if (!read(std::min(0.1, std::max(0.0, end - now()))))
+  while ((at = heard_.find(text)) == std::string::npos && secondsNow() < end) {
+    if (!read(std::min(0.1, std::max(0.0, end - secondsNow()))))
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
   const std::size_t count = at == std::string::npos ? heard_.size() : at + text.size();
@@ -71,7 +60,7 @@ std::string Console::hear(const std::string& text, double seconds) {
 }
 
 bool Console::ends(double seconds) {
-  for (const double end = now() + seconds; now() < end;) {
+  for (const double end = secondsNow() + seconds; secondsNow() < end;) {
     read(0.02);  // a full terminal would keep it
     if (waitpid(pid_, nullptr, WNOHANG) == pid_) pid_ = 0;
     if (pid_ == 0) return true;

@@ -16,18 +16,12 @@
 #include <stdexcept>
 #include <thread>
 
+#include "rayshade/program/progress.h"
+
 namespace rayshade {
-namespace {
-
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-}  // namespace
-
 Program::Program(const std::vector<std::string>& arguments, const std::string& scratch,
                  const Environment& environment, const std::string& directory)
-    : begin_(now()), outputFile_(scratch + ".out"), errorFile_(scratch + ".err") {
+    : begin_(secondsNow()), outputFile_(scratch + ".out"), errorFile_(scratch + ".err") {
   pid_ = fork();
   if (pid_ < 0) throw std::runtime_error("fork");
   if (pid_ > 0) return;
@@ -35,13 +29,8 @@ Program::Program(const std::vector<std::string>& arguments, const std::string& s
   const int out = open(outputFile_.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
   const int err = open(errorFile_.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
   if (in < 0 || out < 0 || err < 0 || dup2(in, 0) < 0 || dup2(out, 1) < 0 || dup2(err, 2) < 0) _exit(126);
-  for (const auto& [name, value] : environment) setenv(name.c_str(), value.c_str(), 1);
   if (!directory.empty() && chdir(directory.c_str()) != 0) _exit(126);
-  std::vector<char*> list;
-  for (const std::string& argument : arguments) list.push_back(const_cast<char*>(argument.c_str()));
-  list.push_back(nullptr);
-  execvp(list[0], list.data());
-  _exit(127);
+  becomeProgram(arguments, environment);
 }
 
 Program::~Program() {
@@ -57,7 +46,7 @@ bool Program::running() {
     finished.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
     finished.output = readText(outputFile_);
     finished.errors = readText(errorFile_);
-    finished.seconds = now() - begin_;
+    finished.seconds = secondsNow() - begin_;
     finished.peakKilobytes = usage.ru_maxrss;
     done_ = finished;
   }
@@ -65,10 +54,10 @@ bool Program::running() {
 }
 
 Finished Program::wait(double seconds) {
-  const double deadline = now() + seconds;
+  const double deadline = secondsNow() + seconds;
   bool inTime = true;
   while (running()) {
-    if (inTime && now() >= deadline) {
+    if (inTime && secondsNow() >= deadline) {
       inTime = false;
       kill(pid_, SIGKILL);
     }
@@ -76,6 +65,15 @@ Finished Program::wait(double seconds) {
   }
   done_->inTime = inTime;
   return *done_;
+}
+
+void becomeProgram(const std::vector<std::string>& arguments, const Program::Environment& environment) {
+  for (const auto& [name, value] : environment) setenv(name.c_str(), value.c_str(), 1);
+  std::vector<char*> list;
+  for (const std::string& argument : arguments) list.push_back(const_cast<char*>(argument.c_str()));
+  list.push_back(nullptr);
+  execvp(list[0], list.data());
+  _exit(127);
 }
 
 std::string programDirectory() {

@@ -45,6 +45,10 @@ class Program {
   std::optional<Finished> done_;
 };
 
+// In a child: becomes a program with these variables beside its own, or ends with 127.
+[[noreturn]] void becomeProgram(const std::vector<std::string>& arguments,
+                                const Program::Environment& environment);
+
 // Where the programs are: $RAYSHADE_BIN, or bin.  Absolute.
 std::string programDirectory();
 
