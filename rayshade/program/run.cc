@@ -4,8 +4,8 @@
 #include <sys/resource.h>
 
 #include <cstdio>
-#include <memory>
 #include <new>
+#include <utility>
 
 #include "rayshade/base/error.h"
 #include "rayshade/base/interruption.h"
@@ -14,7 +14,20 @@ namespace rayshade {
 namespace {
 
 constexpr int kBadInput = 1, kBadCommandLine = 2;
-constexpr std::size_t kReserve = std::size_t{1} << 20;  // bytes, for the message that there are no more
+
+// Memory for the message that there is no more.  Untouched, it costs no page.  The operators are called by name: of an
+// expression `new` that nobody uses compilers leave nothing.
+class Reserve {
+ public:
+  Reserve() = default;
+  Reserve(const Reserve&) = delete;
+  Reserve& operator=(const Reserve&) = delete;
+  ~Reserve() { release(); }
+  void release() { ::operator delete(std::exchange(bytes_, nullptr)); }
+
+ private:
+  void* bytes_ = ::operator new(std::size_t{1} << 20);
+};
 
 std::string megabytes(double bytes) {
   char text[32];
@@ -44,7 +57,7 @@ std::string memoryOfProcess() {
 int runProgram(const std::string& program, const std::function<int()>& work,
                const std::function<std::string()>& memory) {
   const std::string name = program + ": ";
-  auto reserve = std::make_unique_for_overwrite<char[]>(kReserve);
+  Reserve reserve;
   try {
     return work();
   } catch (const SceneError& error) {  // names the scene
@@ -52,7 +65,7 @@ int runProgram(const std::string& program, const std::function<int()>& work,
   } catch (const CommandLineError& error) {
     return endsWith(kBadCommandLine, name, name + error.what());
   } catch (const std::bad_alloc&) {
-    reserve.reset();
+    reserve.release();
     return endsWith(kBadInput, name, name + "not enough memory " + memory());
   } catch (const std::exception& error) {
     return endsWith(kBadInput, name, name + error.what());
