@@ -67,11 +67,7 @@ void HostTask::renderFrame(const View& view, const PictureSpec& picture, std::in
     issuing_.issue();
     summary_.peakInFlight = std::max<std::uint64_t>(summary_.peakInFlight, issuing_.inFlight());
     if (options_.dynamicShading) sendWeights();
-    if (progress) {
-      Completed completed = sampler.completed();
-      completed.samples -= issuing_.inFlight();
-      progress(completed);
-    }
+    if (progress) progress(sampler.completed());
     takeEvents(1);
   }
   summary_.notFinite += sampler.counts().notFinite;
@@ -178,6 +174,7 @@ bool HostTask::configure() {
   for (Slave& slave : roster_.slaves()) {
     slave.ready = false;
     configuration_.number = slave.placement.index;
+    configuration_.threads = options_.threads;
     outbox_.post(slave.task, configuration_);
     peers.push_back(slave.task);
   }
@@ -220,6 +217,8 @@ void HostTask::handle(const LinkEvent& event) {
       break;
     case LinkEvent::Kind::hostJoined:
       break;  // it is there for the next successor
+    case LinkEvent::Kind::jobDone:
+      break;  // the host has no threads
   }
 }
 

@@ -21,7 +21,8 @@ namespace rayshade {
 
 class HostTask {
  public:
-  using Accepted = TypeList<ItemsTaken, Ready, Report, Pong, Load, Answer, SampleColors, PyramidWanted>;
+  using Accepted =
+      TypeList<ItemsTaken, Ready, Report, Pong, Load, Answer, SampleColors, TileDone, PyramidWanted>;
   // Reads the scene once more, from the beginning, into a sink.
   using SceneReader = std::function<void(SceneSink&)>;
 
@@ -44,6 +45,7 @@ class HostTask {
   void on(TaskId from, Load message);
   void on(TaskId, Answer message) { issuing_.arrive(message.record, message.color); }
   void on(TaskId, const SampleColors& message);
+  void on(TaskId, const TileDone& message) { outbox_.traffic.refused += !issuing_.arrive(message); }
   void on(TaskId from, PyramidWanted) { issuing_.wanted(from); }
 
  private:

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pvm/host/issuing.h"
 
+#include <cmath>
+
 #include "rayshade/space/walk.h"
 
 namespace rayshade {
@@ -12,34 +14,76 @@ constexpr std::size_t kRun = 64;
 // One sample that is slow must not let the others run away from it: windows from the oldest to the newest.
 constexpr std::size_t kMostSpan = 64;
 
+// That no tile has traced: so many in one message.
+constexpr std::size_t kManySamples = 256;
+
+std::size_t pixelsOf(const Tile& tile) {
+  return static_cast<std::size_t>(tile.width) * static_cast<std::size_t>(tile.height);
+}
+
 }  // namespace
 
 void Issuing::beginFrame() {
   const FrameRequest& request = configuration_.request;
-  sampler_.emplace(request.picture, request.seed, static_cast<std::uint32_t>(configuration_.exposure.frame));
+  const auto side = static_cast<std::int32_t>(std::sqrt(options_.tilePixels));
+  sampler_.emplace(request.picture, request.seed, static_cast<std::uint32_t>(configuration_.exposure.frame),
+                   std::max(side, 1));
 }
 
 void Issuing::endFrame() {
   inFlight_.takeAll();
+  tilesInFlight_.takeAll();
+  pixelsInFlight_ = 0;
   again_.clear();
+  tilesAgain_.clear();
+  tiles_.clear();
 }
 
 std::size_t Issuing::recall() {
   wanting_.clear();
-  const std::vector<SampleId> samples = inFlight_.takeAll();
-  again_.insert(again_.end(), samples.begin(), samples.end());
-  return samples.size();
+  const std::size_t samples = inFlight();
+  for (const Issued& issued : inFlight_.takeAll()) again_.push_back(issued);
+  for (const Tile& tile : tilesInFlight_.takeAll()) tilesAgain_.push_back(tile);
+  pixelsInFlight_ = 0;
+  return samples;
 }
 
 void Issuing::arrive(RecordId record, Color color) {
-  if (const std::optional<SampleId> sample = inFlight_.take(record)) sampler_->supply(*sample, color);
+  const std::optional<Issued> issued = inFlight_.take(record);
+  if (!issued) return;
+  if (issued->tile == kNoTile) return sampler_->supply(issued->sample, color);
+  const auto open = tiles_.find(issued->tile);
+  TileSampler& tile = open->second.sampler;
+  tile.supply(issued->sample, color);
+  if (!tile.finished()) return;
+  sampler_->supply(open->second.tile, tile.colors());
+  tiles_.erase(open);
+}
+
+bool Issuing::arrive(const TileDone& message) {
+  const std::optional<Tile> tile = tilesInFlight_.take(message.number);
+  if (!tile) return false;
+  pixelsInFlight_ -= pixelsOf(*tile);
+  if (fit(message.colors, *tile)) {
+    sampler_->supply(*tile, message.colors);
+    return true;
+  }
+  tilesAgain_.push_back(*tile);
+  return false;
+}
+
+// Enough that nobody waits for the host.
+std::size_t Issuing::window() const {
+  constexpr std::size_t kLeast = 16384, kEach = 4096;
+  const Directory& directory = configuration_.directory;
+  return options_.window > 0 ? options_.window : std::max(kLeast, kEach * finderCount(directory));
 }
 
 void Issuing::issue() {
-  if (configuration_.directory.pyramidTasks.empty()) {
-    issueRuns();
-  } else {
+  if (inTiles(configuration_)) {
     issueTiles();
+  } else {
+    issueRuns();
   }
 }
 
@@ -58,33 +102,65 @@ void Issuing::issueRuns() {
   }
 }
 
+// Samples that no tile has traced go first as soon as they are worth a message: rows wait for them.
 void Issuing::issueTiles() {
   while (!wanting_.empty()) {
-    const PrimaryRays work = takeSamples(options_.tileSamples);
-    if (work.samples.empty()) return;
-    outbox_.post(wanting_.front(), work);
+    const bool many = again_.size() + sampler_->missing() >= kManySamples;
+    std::optional<Tile> tile;
+    if (!many) tile = nextTile();
+    if (tile) {
+      const TileWork work{static_cast<std::uint32_t>(tilesInFlight_.next()), *tile};
+      tilesInFlight_.add(*tile);
+      pixelsInFlight_ += pixelsOf(*tile);
+      outbox_.post(wanting_.front(), work);
+    } else {
+      const PrimaryRays work = takeSamples(kManySamples);
+      if (work.samples.empty()) return;
+      outbox_.post(wanting_.front(), work);
+    }
     wanting_.pop_front();
   }
+}
+
+std::optional<Tile> Issuing::nextTile() {
+  if (inFlight() > 0 && inFlight() + options_.tilePixels > window()) return std::nullopt;
+  if (tilesAgain_.empty()) return sampler_->nextTile();
+  const Tile tile = tilesAgain_.front();
+  tilesAgain_.pop_front();
+  return tile;
 }
 
 // The next samples, up to `most`, as one message.
 PrimaryRays Issuing::takeSamples(std::size_t most) {
   PrimaryRays work;
   work.firstRecord = inFlight_.next();
-  SampleId sample;
-  while (work.samples.size() < most && nextSample(sample)) {
-    inFlight_.add(sample);
-    work.samples.push_back(sample);
+  Issued issued;
+  while (work.samples.size() < most && nextSample(issued)) {
+    inFlight_.add(issued);
+    work.samples.push_back(issued.sample);
   }
   return work;
 }
 
-bool Issuing::nextSample(SampleId& sample) {
-  if (inFlight_.size() >= options_.window || inFlight_.span() >= kMostSpan * options_.window) return false;
-  if (again_.empty()) return sampler_->next(sample);
-  sample = again_.front();
-  again_.pop_front();
-  return true;
+bool Issuing::nextSample(Issued& issued) {
+  if (inFlight() >= window() || inFlight_.span() >= kMostSpan * window()) return false;
+  if (!again_.empty()) {
+    issued = again_.front();
+    again_.pop_front();
+    return true;
+  }
+  issued.tile = kNoTile;
+  if (sampler_->nextSamples(std::span(&issued.sample, 1)) == 1) return true;
+  if (inTiles(configuration_)) return false;
+  for (auto& [number, open] : tiles_) {
+    issued.tile = number;
+    if (open.sampler.next(std::span(&issued.sample, 1)) == 1) return true;
+  }
+  const std::optional<Tile> tile = sampler_->nextTile();
+  if (!tile) return false;
+  issued.tile = tilesBegun_++;
+  const auto open = tiles_.emplace(issued.tile, OpenTile{*tile, TileSampler(sampler_->rules(), *tile)}).first;
+  return open->second.sampler.next(std::span(&issued.sample, 1)) == 1;
 }
 
 }  // namespace rayshade

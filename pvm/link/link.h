@@ -9,6 +9,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -41,7 +42,7 @@ constexpr const char* programName(Role role) {
 
 // What comes in.
 struct LinkEvent {
-  enum class Kind : std::uint8_t { packet, taskExit, hostExit, hostJoined } kind = Kind::packet;
+  enum class Kind : std::uint8_t { packet, taskExit, hostExit, hostJoined, jobDone } kind = Kind::packet;
   TaskId task = kNobody;  // the sender, or the task that is gone
   std::string host;       // of hostExit and hostJoined
   Bytes bytes;            // of a packet
@@ -59,6 +60,17 @@ class Link {
   virtual std::optional<LinkEvent> wait(double seconds) = 0;  // nothing: the time is over
   virtual void watch(TaskId task) = 0;                        // a taskExit event will tell of its death
   virtual double now() const = 0;                             // seconds of a clock that only goes forward
+
+  // ---- threads of this task, beside the one that calls
+
+  virtual unsigned cores() const = 0;  // of its machine
+
+  // Work of one thread: `worker` is 0 .. threads - 1, and no two jobs of one worker are done at a time.
+  using Job = std::function<void(unsigned worker)>;
+  // Starts so many threads; ends those that there were, when the jobs that have begun are done: the others are dropped.
+  virtual void useThreads(unsigned threads) = 0;
+  // Requires threads.  A jobDone event tells of one or several jobs that are done; what a job throws is thrown there.
+  virtual void run(Job job) = 0;
 };
 
 // A machine that tasks can be placed on.

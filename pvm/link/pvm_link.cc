@@ -102,11 +102,13 @@ std::optional<LinkEvent> PvmLink::wait(double seconds) {
   const double end = now() + seconds;
   for (;;) {
     if (auto event = poll()) return event;  // first: a message may lie in libpvm with all sockets quiet
+    if (threads_.takeDone()) return LinkEvent{LinkEvent::Kind::jobDone, self_, {}, {}};
     double left = end - now();
     if (!(left > 0)) return std::nullopt;
     if (peers_.anyEnding()) left = std::min(left, kSettleSeconds / 10);
     std::vector<pollfd> sockets;
     daemon_.addSockets(sockets);
+    if (threads_.descriptor() >= 0) sockets.push_back({threads_.descriptor(), POLLIN, 0});
     ::poll(sockets.data(), sockets.size(), static_cast<int>(std::min(std::ceil(left * 1000), 1e9)));
   }
 }

@@ -10,8 +10,10 @@
 #pragma once
 
 #include <deque>
+#include <thread>
 
 #include "pvm/link/host_table.h"
+#include "pvm/link/link_threads.h"
 #include "pvm/link/routes.h"
 #include "pvm/link/spawning.h"
 #include "pvm/link/task_output.h"
@@ -34,6 +36,9 @@ class PvmLink final : public Machine {
   std::optional<LinkEvent> wait(double seconds) override;
   void watch(TaskId task) override;
   double now() const override { return steadySeconds(); }
+  unsigned cores() const override { return std::max(1u, std::thread::hardware_concurrency()); }
+  void useThreads(unsigned threads) override { threads_.use(threads); }
+  void run(Job job) override { threads_.run(std::move(job)); }
 
   std::vector<HostInfo> hosts() override { return hosts_.answering(self_); }
   Spawned spawn(Role role, const std::string& host) override;  // "": this machine
@@ -57,7 +62,8 @@ class PvmLink final : public Machine {
   HostTable hosts_{daemon_};
   Peers peers_;
   Routes routes_;
-  TaskOutput output_;             // of spawned tasks
+  TaskOutput output_;  // of spawned tasks
+  LinkThreads threads_;
   std::deque<LinkEvent> events_;  // not yet told
   std::uint64_t refused_ = 0;
 };

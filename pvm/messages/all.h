@@ -62,6 +62,6 @@ using AllMessages = InOrderOfTags<ControlMessages, CellMessages, RayMessages>::T
 // The compiler names what is missing.
 static_assert((AllMessages::forEach([]<Message M>() {}), true));
 
-inline constexpr std::uint8_t kWireVersion = 4;
+inline constexpr std::uint8_t kWireVersion = 5;
 
 }  // namespace rayshade

@@ -11,7 +11,12 @@ bool isComplete(const Configure& message) {
   return isComplete(message.directory, message.tree) &&
          (!message.directory.shadeTasks.empty() || message.policy.shadeLocally) &&
          message.cellBytes.size() == cells && message.cellBounds.size() == cells &&
-         message.policy.outstanding > 0;
+         message.policy.outstanding > 0 && pixelArea(message.request.picture).has_value();
+}
+
+bool inTiles(const Configure& message) {
+  const Directory& directory = message.directory;
+  return !directory.pyramidTasks.empty() || (message.policy.shadeLocally && directory.tasksPerCluster() == 1);
 }
 
 Ray primaryRay(const FrameRequest& request, const Exposure& exposure, const SampleId& sample) {

@@ -31,13 +31,6 @@ struct DemandPolicy {
   std::uint32_t outstanding = 64;       // cells asked for at a time
 };
 
-// What is asked for: from here to rays of samples.
-struct FrameRequest {
-  View view;
-  PictureSpec picture;
-  std::uint64_t seed = 0;
-};
-
 // The primary ray of a sample.
 Ray primaryRay(const FrameRequest& request, const Exposure& exposure, const SampleId& sample);
 
@@ -68,7 +61,8 @@ struct Configure {
   SceneSettings settings;
   BinTree tree;
   Directory directory;
-  std::uint32_t number = 0;  // of the receiver among the tasks of its role
+  std::uint32_t number = 0;   // of the receiver among the tasks of its role
+  std::uint32_t threads = 1;  // of the receiver; 0: as many as its machine has cores
   Exposure exposure;
   DemandPolicy policy;
   FrameRequest request;
@@ -142,6 +136,8 @@ struct Pong {
 };
 
 bool isComplete(const Configure& message);
+// Are primary rays traced in tiles, by tasks that ask for them?  Else they are sent where they begin.
+bool inTiles(const Configure& message);
 
 // Does this machine compute the same bits as another?  A hash over results of the library functions that the pictures
 // depend on: their last bits differ between processors on which glibc chooses different code.
@@ -155,11 +151,6 @@ void serialize(Archive& archive, Horizon& h) {
 template <class Archive>
 void serialize(Archive& archive, DemandPolicy& p) {
   archive(p.shadows, p.horizon, p.secondariesTravel, p.shadeLocally, p.cacheBytes, p.outstanding);
-}
-
-template <class Archive>
-void serialize(Archive& archive, FrameRequest& e) {
-  archive(e.view, e.picture, e.seed);
 }
 
 template <class Archive>
@@ -180,8 +171,8 @@ void serialize(Archive& archive, Exposure& e) {
 
 template <class Archive>
 void serialize(Archive& archive, Configure& m) {
-  archive(m.epoch, m.settings, m.tree, m.directory, m.number, m.exposure, m.policy, m.request, m.cellBytes,
-          m.cellBounds, m.loadEvery);
+  archive(m.epoch, m.settings, m.tree, m.directory, m.number, m.threads, m.exposure, m.policy, m.request,
+          m.cellBytes, m.cellBounds, m.loadEvery);
 }
 
 template <class Archive>

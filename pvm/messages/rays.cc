@@ -12,6 +12,12 @@ bool samplesFit(const PrimaryRays& message, const PictureSpec& picture) {
                      [cells](const SampleId& s) { return s.cell >= 0 && s.cell < cells; });
 }
 
+bool fits(const Tile& tile, const SamplingRules& rules) {
+  return tile.x >= 0 && tile.y >= 0 && tile.width > 0 && tile.height > 0 && tile.width <= rules.area.width &&
+         tile.height <= rules.rowCount && tile.x <= rules.area.width - tile.width &&
+         tile.y <= rules.rowCount - tile.height && tile.width <= kMostTilePixels / tile.height;
+}
+
 ShadowTravel travelOf(const ShadowRay& shadow, Slot slot, std::uint32_t step) {
   return {slot,           step,        shadow.ray.origin,    shadow.ray.direction, shadow.distance,
           shadow.through, shadow.last, shadow.insideExtinct, shadow.inside};

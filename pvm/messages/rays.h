@@ -73,15 +73,14 @@ struct Expect {
   InlineVector<Slot, 8> pending;  // light points whose colour will come in LightAnswers, ascending
 };
 
-// From a pyramid-trace task to the host: it has room for a pyramid.
+// From a tracing task to the host: it has room for a pyramid.
 struct PyramidWanted {
   static constexpr bool isFact = false;
   static constexpr std::uint8_t tag = 13;
 };
 
-// Host to a tracing task: follow the primary rays of these samples.  To a pyramid-trace task, the samples of a tile, which
-// make one pyramid; to a voxel-trace task, samples whose rays as a rule begin in its voxels.  Sample i is record
-// firstRecord + i of the host.
+// Host to a tracing task: follow the primary rays of these samples.  To a voxel-trace task, samples whose rays as a rule begin in
+// its voxels; to a task that traces tiles, those that no tile has traced.  Sample i is record firstRecord + i of the host.
 struct PrimaryRays {
   static constexpr bool isFact = false;
   static constexpr std::uint8_t tag = 14;
@@ -92,7 +91,27 @@ struct PrimaryRays {
 // Are there any, and are they samples of this picture?
 bool samplesFit(const PrimaryRays& message, const PictureSpec& picture);
 
-// To a shade task or the host: the colour of a ray comes home.
+// Host to a tracing task: trace the samples of this tile, the `number`-th of the frame.
+struct TileWork {
+  static constexpr bool isFact = false;
+  static constexpr std::uint8_t tag = 21;
+  std::uint32_t number = 0;
+  Tile tile;
+};
+// The largest tile: records of its samples are numbered, see sampleRecord().
+inline constexpr std::int32_t kMostTilePixels = 1 << 16;
+// Does the tile lie in this picture?
+bool fits(const Tile& tile, const SamplingRules& rules);
+
+// The answer to TileWork: the colours of the tile.
+struct TileDone {
+  static constexpr bool isFact = false;
+  static constexpr std::uint8_t tag = 22;
+  std::uint32_t number = 0;
+  TileColors colors;
+};
+
+// To a shade task, the host or a tracing task: the colour of a ray comes home.
 struct Answer {
   static constexpr bool isFact = false;
   static constexpr std::uint8_t tag = 12;
@@ -194,10 +213,9 @@ void serialize(Archive& archive, PrimaryRays& m) {
 
 // Where nothing is there is the background, over and over.
 template <class Archive>
-void serialize(Archive& archive, SampleColors& m) {
-  archive(m.first);
+void serializeColors(Archive& archive, std::vector<Color>& colors) {
   Color before = kBlack;
-  serializeEach(archive, m.colors, 1, [&](Color& color) {
+  serializeEach(archive, colors, 1, [&](Color& color) {
     bool again = false;
     if constexpr (!Archive::kReading) again = sameBits(color, before);
     archive(again);
@@ -211,12 +229,30 @@ void serialize(Archive& archive, SampleColors& m) {
 }
 
 template <class Archive>
+void serialize(Archive& archive, SampleColors& m) {
+  archive(m.first);
+  serializeColors(archive, m.colors);
+}
+
+template <class Archive>
+void serialize(Archive& archive, TileWork& m) {
+  archive(m.number, m.tile.x, m.tile.y, m.tile.width, m.tile.height);
+}
+
+template <class Archive>
+void serialize(Archive& archive, TileDone& m) {
+  archive(m.number, m.colors.full, m.colors.samples, m.colors.notFinite);
+  serializeColors(archive, m.colors.first);
+  serializeColors(archive, m.colors.whole);
+}
+
+template <class Archive>
 void serialize(Archive& archive, Answer& m) {
   archive(m.record, m.slot);
   serializeCompact(archive, m.color);
 }
 
-using RayMessages =
-    TypeList<RayTask, ShadowTask, LightAnswers, Expect, PyramidWanted, PrimaryRays, Answer, SampleColors>;
+using RayMessages = TypeList<RayTask, ShadowTask, LightAnswers, Expect, PyramidWanted, PrimaryRays, Answer,
+                             SampleColors, TileWork, TileDone>;
 
 }  // namespace rayshade

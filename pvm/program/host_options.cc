@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pvm/program/host_options.h"
 
+#include <unistd.h>
+
 #include <cmath>
 #include <cstdlib>
 
@@ -28,12 +30,38 @@ CLI::Validator horizon() {
       "");
 }
 
+// Of the objects of a usual scene, with their accelerators.
+constexpr std::uint64_t kBytesPerObject = 200;
+
+std::uint64_t memoryOfMachine() {
+  return static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) *
+         static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+}
+
 }  // namespace
 
-void applySchedule(HostProgramOptions& o, std::uint32_t hosts) {
+std::string applySchedule(HostProgramOptions& o, std::uint32_t hosts, std::uint64_t objects) {
   HostOptions& host = o.host;
   DemandPolicy& policy = host.policy;
-  if (o.schedule == "hybrid") {
+  std::string why;
+  const bool tasksSaid =
+      host.wishes.voxels > 0 || o.pyramids || host.wishes.clusters > 1 || host.wishes.shades;
+  // Tasks asked for by number get one thread each.
+  host.threads = o.render.threads.value_or(o.schedule == "auto" && !tasksSaid ? 0 : 1);
+  if (o.schedule == "auto" && tasksSaid) {
+    policy.shadows = ShadowPolicy::automatic;
+    why = "rays travel, for tasks were asked for by number";
+  } else if (o.schedule == "auto" && objects * kBytesPerObject <= memoryOfMachine() / 4) {
+    host.wishes.clusters = hosts;
+    host.wishes.voxels = 1;
+    host.wishes.shades = 0;
+    why = "each machine holds the whole scene, which is small against its memory, and traces tiles";
+  } else if (o.schedule == "auto") {
+    host.wishes.voxels = hosts;
+    host.wishes.pyramids = hosts;
+    policy.shadows = ShadowPolicy::automatic;
+    why = "the scene is divided, for it is large against the memory of a machine";
+  } else if (o.schedule == "hybrid") {
     host.wishes.pyramids = 2 * hosts;
     policy.shadows = ShadowPolicy::automatic;
   } else if (o.schedule == "pipelined") {
@@ -58,6 +86,7 @@ void applySchedule(HostProgramOptions& o, std::uint32_t hosts) {
   }
   if (o.cacheMegabytes) policy.cacheBytes = static_cast<std::uint64_t>(*o.cacheMegabytes * 1e6);
   if (o.horizon && *o.horizon != "auto") policy.horizon = *readHorizon(*o.horizon);
+  return why;
 }
 
 void declareHostOptions(CLI::App& app, HostProgramOptions& o) {
@@ -90,10 +119,11 @@ void declareHostOptions(CLI::App& app, HostProgramOptions& o) {
       ->group(tasks);
   const std::string sharing = "What travels: rays or objects";
   app.add_option("--schedule", o.schedule,
-                 "data: all rays travel; hybrid: primary and shadow rays are traced where they begin, with "
+                 "auto: by the size of the scene and the machines; data: all rays travel; hybrid: primary "
+                 "and shadow rays are traced where they begin, with "
                  "fetched cells; "
                  "pipelined: more of that, farther; demand: every ray, nothing travels but objects")
-      ->check(CLI::IsMember({"data", "hybrid", "pipelined", "demand"}))
+      ->check(CLI::IsMember({"auto", "data", "hybrid", "pipelined", "demand"}))
       ->group(sharing);
   app.add_option("--horizon", o.horizon,
                  "how far pyramids go: auto, a number of cells (12c), a distance (3.5)")
@@ -113,12 +143,13 @@ void declareHostOptions(CLI::App& app, HostProgramOptions& o) {
   app.add_option("--cells", o.host.cells, "cells of the bin-tree, about (default: by the size of the scene)")
       ->check(wholeNumberFrom(1, 1 << 22))
       ->group(sharing);
-  app.add_option("--tile", o.host.tileSamples, "samples of a pyramid, at most")
+  app.add_option("--tile", o.host.tilePixels, "pixels of a pyramid, about")
       ->check(wholeNumberFrom(1, 65536))
       ->group(sharing);
   app.add_flag("--dynamic-shading", o.host.dynamicShading, "choose shade tasks by how busy they are")
       ->group(tasks);
-  app.add_option("--window", o.host.window, "samples on their way at a time")
+  app.add_option("--window", o.host.window,
+                 "samples on their way at a time (default: by the number of tasks)")
       ->check(wholeNumberFrom(1, 1 << 24))
       ->group(tasks);
   app.add_option("--patience", o.patience,

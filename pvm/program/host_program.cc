@@ -88,7 +88,8 @@ int run(HostProgramOptions& options, Need& need) {
   const SceneWork work = sceneWork(scenePlan(pass.features.features(), head), survey.objects);
   if (options.plan) {
     const std::vector<HostInfo> hosts = plannedHosts(options.machine);
-    applySchedule(options, static_cast<std::uint32_t>(hosts.size()));
+    const std::string why = applySchedule(options, static_cast<std::uint32_t>(hosts.size()), survey.objects);
+    if (!why.empty()) std::printf("schedule        auto: %s\n", why.c_str());
     std::fputs(describePlan(hosts, options.host, survey, {view, head.picture}, head.settings, work).c_str(),
                stdout);
     return 0;
@@ -114,7 +115,7 @@ int run(HostProgramOptions& options, Need& need) {
   options.host.killAfter = options.patience;
   options.host.pingAfter = options.patience / 3;
   const std::size_t hosts = link.hosts().size();
-  applySchedule(options, static_cast<std::uint32_t>(hosts));
+  applySchedule(options, static_cast<std::uint32_t>(hosts), survey.objects);
   options.host.wishes = neededTasks(work, options.host, hosts).wishes;
   HostTask host(
       link, [&](SceneSink& sink) { parseScene(again, sink); }, survey, head.settings, options.host);

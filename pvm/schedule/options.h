@@ -19,10 +19,11 @@ struct HostOptions {
   Wishes wishes;
   std::uint32_t voxelsPerTask = 1;
   Split split = Split::equal;
-  std::uint32_t window = 4096;      // samples on their way
+  std::uint32_t window = 0;         // samples on their way; 0: by the number of tasks
   std::uint32_t cells = 0;          // of the bin-tree, about; 0: by the size of the scene
-  std::uint32_t tileSamples = 256;  // of a pyramid, at most
+  std::uint32_t tilePixels = 1024;  // of a pyramid, about
   DemandPolicy policy;
+  std::uint32_t threads = 1;    // of a tracing task; 0: as many as its machine has cores
   bool dynamicShading = false;  // shade tasks chosen by how busy they are
   std::uint64_t seed = 0;
   bool mixedArithmetic = false;  // go on when hosts compute different bits

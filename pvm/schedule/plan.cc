@@ -40,7 +40,7 @@ void addPolicy(std::string& text, const HostOptions& options, const SceneSetting
   if (options.wishes.pyramids == 0) {
     add(text, "primary rays    travel from voxel to voxel: no pyramid tasks\n");
   } else {
-    add(text, "primary rays    in pyramids of at most %u, with fetched cells %s\n", options.tileSamples,
+    add(text, "primary rays    in pyramids of at most %u, with fetched cells %s\n", options.tilePixels,
         describe(policy.horizon).c_str());
   }
   std::size_t areas = 0, casting = 0;

@@ -21,7 +21,7 @@ NeededTasks neededTasks(const SceneWork& work, const HostOptions& options, std::
   tasks.wishes.voxels =
       lower(voxelTasksPerCluster(options.wishes, hosts), std::max<std::uint64_t>(work.objects, 1),
             "voxel-trace tasks", std::to_string(work.objects) + (work.objects == 1 ? " object" : " objects"));
-  const std::uint64_t tile = std::max(1u, options.tileSamples);
+  const std::uint64_t tile = std::max(1u, options.tilePixels);
   const std::uint64_t pyramids =
       std::max<std::uint64_t>((work.eyeRays + tile - 1) / tile, options.wishes.clusters);
   tasks.wishes.pyramids = lower(options.wishes.pyramids, pyramids, "pyramid-trace tasks",

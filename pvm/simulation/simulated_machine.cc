@@ -77,10 +77,26 @@ class SimulatedMachine::Inside final : public Link {
   std::optional<LinkEvent> wait(double) override { return std::nullopt; }
   void watch(TaskId task) override { machine_.watchers_[task].insert(self_); }
   double now() const override { return machine_.time_ += 1e-7; }  // work takes time: it ends when asked to
+  unsigned cores() const override { return machine_.options_.cores; }
+  void useThreads(unsigned threads) override {
+    threads_ = threads;
+    jobs.clear();
+  }
+  void run(Job job) override { jobs.push_back(std::move(job)); }
+
+  // Does one of the jobs that wait, by chance.
+  void doOne() {
+    const auto chosen = jobs.begin() + static_cast<std::ptrdiff_t>(machine_.random(jobs.size()));
+    const Job job = std::move(*chosen);
+    jobs.erase(chosen);
+    job(static_cast<unsigned>(machine_.random(threads_)));
+  }
+  std::vector<Job> jobs;
 
  private:
   SimulatedMachine& machine_;
   TaskId self_;
+  unsigned threads_ = 1;
 };
 
 struct SimulatedMachine::Running {
@@ -190,13 +206,19 @@ bool SimulatedMachine::move(std::optional<LinkEvent>& forHost) {
   }
   std::vector<Running*> busy;
   for (const auto& [id, running] : tasks_)
-    if (running->mayWork && !running->hangs) busy.push_back(running.get());
+    if ((running->mayWork || !running->link.jobs.empty()) && !running->hangs) busy.push_back(running.get());
   if (open.empty() && busy.empty()) return false;
   const std::uint64_t choice = random(open.size() + busy.size());
   if (choice < open.size()) {
     forHost = deliver(open[choice]);
   } else {
     Running& running = *busy[choice - open.size()];
+    if (!running.link.jobs.empty() && (!running.mayWork || random(2) == 0)) {
+      running.link.doOne();
+      running.task->receive({LinkEvent::Kind::jobDone, running.link.self(), "", {}});
+      running.mayWork = true;
+      return true;
+    }
     running.mayWork = running.task->work(time_ + 1e-7 * static_cast<double>(random(20)));
     if (!running.mayWork || random(4) == 0) running.task->flush();
   }

@@ -47,6 +47,7 @@ class SimulatedMachine : public Machine {
   struct Options {
     std::uint64_t seed = 1;
     std::vector<HostInfo> hosts{{"simulated", 1000}};
+    unsigned cores = 1;  // of each of them
     // A task is killed, or stops to move, every so many moves, by chance; 0: never.
     std::uint64_t movesPerDeath = 0;
     std::uint64_t movesPerHang = 0;
@@ -66,6 +67,9 @@ class SimulatedMachine : public Machine {
   std::optional<LinkEvent> wait(double seconds) override;
   void watch(TaskId task) override { watchers_[task].insert(kHost); }
   double now() const override { return time_; }
+  unsigned cores() const override { return options_.cores; }
+  void useThreads(unsigned) override {}  // the host has none
+  void run(Job) override {}
   std::vector<HostInfo> hosts() override { return options_.hosts; }
   Spawned spawn(Role role, const std::string& host) override;
   void kill(TaskId task) override;

@@ -1,8 +1,7 @@
-// Shades hits where they were found, or tells a shade task of them.
+// Tells shade tasks of hits: what is known and what is still to come (Reinhard & Jansen, section 3).
 //
-// Light is traced first (rayshade/trace/shade_hits.h).  With --shading local a hit that has all of its light is finished here;
-// otherwise, and whenever a shadow ray goes on elsewhere, a shade task is told what is known and what is still to come
-// (Reinhard & Jansen, section 3).
+// With --shading separate of all hits, as soon as their shadow rays have been traced (rayshade/trace/shade_hits.h); with
+// --shading local only of those a part of whose light comes from elsewhere.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -17,14 +16,15 @@ class HitShader {
             ShadowBundles& shadows, TraceCounts& counts)
       : at_(at), space_(space), replies_(replies), shades_(shades), shadows_(shadows), counts_(counts) {}
 
-  // At most kBundleSize rays of this task have hit; to[i]: where the colour of hits[i] goes.  queue(ray, reply) takes the
+  // Separate shading of at most kBundleSize hits; to[i]: where the colour of hits[i] goes.  queue(ray, reply) takes the
   // transmitted and reflected rays.
   template <class Queue>
   void shade(std::span<const RayHit> hits, std::span<const ReplyTo> to, Queue queue);
+  // A shade task takes the hit over.  Says where the colours of its onward rays go.
+  ReplyTo handOver(ShadedHit& at, const Ray& ray, const ReturnPath& back, const ReplyTo& to);
 
  private:
   void traceLight(std::span<const RayHit> hits);
-  std::optional<ReplyTo> finishHit(ShadedHit& at, const ReplyTo& to);
 
   const EpochSettings& at_;
   TaskSpace& space_;
@@ -42,13 +42,11 @@ template <class Queue>
 void HitShader::shade(std::span<const RayHit> hits, std::span<const ReplyTo> to, Queue queue) {
   traceLight(hits);
   for (std::size_t i = 0; i < hits.size(); ++i) {
-    const std::optional<ReplyTo> back = finishHit(shaded_[i], to[i]);
-    if (!back) continue;
-    OnwardRays& onward = shaded_[i].onward;
-    if (onward.transmitted)
-      queue(std::move(*onward.transmitted), ReplyTo{back->task, back->record, kTransmittedSlot});
-    if (onward.reflected)
-      queue(std::move(*onward.reflected), ReplyTo{back->task, back->record, kReflectedSlot});
+    ShadedHit& at = shaded_[i];
+    OnwardRays& onward = at.onward;
+    const ReplyTo back = handOver(at, *at.ray, returnPath(*at.ray, at.t, onward, at_.settings), to[i]);
+    if (onward.transmitted) queue(std::move(*onward.transmitted), {back.task, back.record, kTransmittedSlot});
+    if (onward.reflected) queue(std::move(*onward.reflected), {back.task, back.record, kReflectedSlot});
   }
 }
 

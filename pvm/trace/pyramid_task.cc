@@ -24,8 +24,7 @@ void PyramidTask::on(TaskId from, Configure message) {
   }
   context_.beginEpoch(from, message);
   host_ = from;
-  tiles_.clear();
-  secondaries_.clear();
+  rays_.clear();
   waitingForCell_.clear();
   const std::uint32_t cluster = message.number % message.directory.clusters;
   const auto finder = static_cast<std::uint32_t>(message.directory.voxelTasks.size()) + message.number;
@@ -33,14 +32,12 @@ void PyramidTask::on(TaskId from, Configure message) {
   context_.link.connect(unit_.at.directory.voxelTasks);
   context_.link.connect(unit_.at.directory.shadeTasks);
   context_.outbox.post(from, Ready{context_.epoch, arithmeticFingerprint(), 0, 0, 0});
-  for (int i = 0; i < kAhead; ++i) context_.outbox.post(from, PyramidWanted{});
+  unit_.wantTiles(from);
 }
 
 void PyramidTask::on(TaskId from, Finish) {
   Report report = context_.report();
   unit_.addTo(report);
-  report.pyramids = pyramids_;
-  report.pyramidRays = pyramidRays_;
   report.forwardedRays = forwarded_;
   report.modelBytes = report.cache.peakBytes;
   context_.outbox.post(from, report);
@@ -79,7 +76,7 @@ std::size_t PyramidTask::beforeHorizon(const std::vector<CellId>& cells, std::si
       case Horizon::Kind::automatic:
         // The cells of all pyramids in hand stay in the cache until they have been traced.
         bytes += at.cellBytes[static_cast<std::size_t>(cell)];
-        if (bytes > at.policy.cacheBytes / kAhead) return n;
+        if (bytes > at.policy.cacheBytes / TraceUnit::kAhead) return n;
         if (!unit_.cells.isHere(cell) && !unit_.cells.fetchingPays(cell, rays)) return n;
         break;
     }
@@ -87,34 +84,43 @@ std::size_t PyramidTask::beforeHorizon(const std::vector<CellId>& cells, std::si
   return n;
 }
 
-void PyramidTask::on(TaskId, PrimaryRays message) {
-  const FrameRequest& request = unit_.at.request;
-  if (!samplesFit(message, request.picture)) {
+void PyramidTask::on(TaskId, TileWork message) {
+  const SamplingRules& rules = *unit_.rules;
+  const Tile& tile = message.tile;
+  if (!fits(tile, rules) || unit_.tiles.has(message.number)) {
     ++context_.outbox.traffic.refused;
     return;
   }
-  const std::int32_t frame = unit_.at.exposure.frame;
-  Tile tile;
-  tile.firstRecord = message.firstRecord;
-  std::vector<SamplePosition> positions;
-  for (const SampleId& sample : message.samples) {
-    positions.push_back(
-        samplePosition(request.picture, request.seed, static_cast<std::uint32_t>(frame), sample));
-    tile.rays.push_back(primaryRay(request.view, positions.back(), frame));
-  }
-  unit_.counts.primaryRays += tile.rays.size();
-  tile.cells = cellsOf(unit_.at.tree, request.view, tile.rays, positions);
-  tile.cells.resize(beforeHorizon(tile.cells, tile.rays.size()));
-  std::erase_if(tile.cells, [this](CellId cell) { return unit_.at.isEmpty(cell); });
-  tiles_.add(
-      std::move(tile),
+  TilesInHand::OpenTile open{tile, TileSampler(rules, tile), {}, 0};
+  open.cells = cellsOf(unit_.at.tree, unit_.at.request, rules, tile, unit_.at.exposure.frame);
+  open.cells.resize(beforeHorizon(open.cells, static_cast<std::size_t>(tile.width * tile.height)));
+  std::erase_if(open.cells, [this](CellId cell) { return unit_.at.isEmpty(cell); });
+  unit_.tiles.add(
+      message.number, std::move(open),
       [this](CellId cell) {
         const bool here = unit_.cache.contains(cell);
         if (here) unit_.cache.pin(cell);
         return here;
       },
       [this](CellId cell) { unit_.cells.want(cell); });
-  context_.notePeak(tiles_.size() + unit_.shadows.waiting());
+  context_.notePeak(unit_.tiles.size() + unit_.shadows.waiting());
+}
+
+// Samples that no tile has traced.
+void PyramidTask::on(TaskId from, PrimaryRays message) {
+  if (!samplesFit(message, unit_.at.request.picture)) {
+    ++context_.outbox.traffic.refused;
+    return;
+  }
+  for (std::size_t i = message.samples.size(); i-- > 0;)
+    rays_.add(primaryRay(unit_.at.request, unit_.at.exposure, message.samples[i]), 0,
+              {from, message.firstRecord + i, 0});
+  unit_.counts.primaryRays += message.samples.size();
+  context_.outbox.post(from, PyramidWanted{});
+}
+
+void PyramidTask::on(TaskId, const Answer& message) {
+  unit_.replies.answer({context_.link.self(), message.record, 0}, message.color);
 }
 
 void PyramidTask::on(TaskId, CellItems message) {
@@ -124,13 +130,13 @@ void PyramidTask::on(TaskId, CellItems message) {
     return;
   }
   unit_.shadows.resume(cell);
-  tiles_.arrive(cell, [&] { unit_.cache.pin(cell); });
+  unit_.tiles.arrive(cell, [&] { unit_.cache.pin(cell); });
   if (const auto waiting = waitingForCell_.find(static_cast<std::uint32_t>(cell));
       waiting != waitingForCell_.end()) {
     RayBundle rays = std::move(waiting->second);
     waitingForCell_.erase(waiting);
     // The cell is here now and may be gone later: each ray passes it at once.
-    while (!rays.empty()) traceSecondaries(rays);
+    while (!rays.empty()) traceWaiting(rays);
   }
   unit_.cells.release(cell);
 }
@@ -138,47 +144,42 @@ void PyramidTask::on(TaskId, CellItems message) {
 // ---- rays
 
 bool PyramidTask::work(double until) {
-  while (!secondaries_.empty() || tiles_.anyReady()) {
-    if (!secondaries_.empty()) {
-      traceSecondaries(secondaries_);
-    } else {
-      tracePyramid();
-    }
-    if (context_.link.now() >= until) break;
+  while (traceSome())
+    if (context_.link.now() >= until) return true;
+  return false;
+}
+
+bool PyramidTask::traceSome() {
+  bool any = !rays_.empty();
+  if (any) {
+    traceWaiting(rays_);
+  } else {
+    any = unit_.traceTile([this](Ray&& ray, const ReplyTo& to) { queue(std::move(ray), to); },
+                          [this](Ray&& ray, const NextBlock& next, const ReplyTo& to) {
+                            ++forwarded_;
+                            goOn(std::move(ray), next, to);
+                          });
   }
-  return !secondaries_.empty() || tiles_.anyReady();
+  unit_.sendTiles(host_, [this](const std::vector<CellId>& cells) {
+    for (CellId cell : cells) unit_.cache.unpin(cell);
+  });
+  return any;
 }
 
-// The next bundle of a pyramid, with the cells that are here; behind the horizon demand driven becomes data driven.
-void PyramidTask::tracePyramid() {
-  Tile& tile = tiles_.front();
-  const std::size_t count = std::min(kBundleSize, tile.rays.size() - tile.next);
-  const std::span<Ray> rays = std::span(tile.rays).subspan(tile.next, count);
-  ReplyTo to[kBundleSize];
-  for (std::size_t i = 0; i < count; ++i) to[i] = {host_, tile.firstRecord + tile.next + i, 0};
+// The last rays of a bundle.
+void PyramidTask::traceWaiting(RayBundle& from) {
+  bundle_.clear();
+  from.moveLast(std::min(from.size(), kBundleSize), bundle_);
   unit_.trace(
-      rays, {}, to, [this](Ray&& ray, const ReplyTo& reply) { goOn(std::move(ray), reply); },
-      [&](std::size_t i, const NextBlock& next) {
-        ++forwarded_;
-        unit_.replies.forward(unit_.at.ownerOf(next.voxel), std::move(rays[i]), next.step, to[i]);
-      });
-  tile.next += count;
-  if (tile.next < tile.rays.size()) return;
-  finish(tile);
-  tiles_.popFront();
+      bundle_.rays, bundle_.begin, bundle_.to,
+      [this](Ray&& ray, const ReplyTo& to) { queue(std::move(ray), to); },
+      [this](Ray&& ray, const NextBlock& next, const ReplyTo& to) { goOn(std::move(ray), next, to); });
 }
 
-void PyramidTask::finish(Tile& tile) {
-  ++pyramids_;
-  pyramidRays_ += tile.rays.size();
-  for (CellId cell : tile.cells) unit_.cache.unpin(cell);
-  context_.outbox.post(host_, PyramidWanted{});
-}
-
-// A ray that goes on from a hit: to the voxel where it begins, or into the own queue.
-void PyramidTask::goOn(Ray&& ray, const ReplyTo& to) {
+// A ray that begins at a hit: to the voxel where it begins, or into the own queue.
+void PyramidTask::queue(Ray&& ray, const ReplyTo& to) {
   if (!unit_.at.policy.secondariesTravel) {
-    secondaries_.add(std::move(ray), 0, to);
+    rays_.add(std::move(ray), 0, to);
     return;
   }
   VoxelWalk walk(unit_.at.tree, ray.origin, ray.direction);
@@ -187,18 +188,14 @@ void PyramidTask::goOn(Ray&& ray, const ReplyTo& to) {
   unit_.replies.forward(unit_.at.ownerOf(first.where), std::move(ray), 0, to);
 }
 
-// The last secondary rays of a bundle; those that miss a cell wait for it.
-void PyramidTask::traceSecondaries(RayBundle& from) {
-  bundle_.clear();
-  from.moveLast(std::min(from.size(), kBundleSize), bundle_);
-  unit_.trace(
-      bundle_.rays, bundle_.begin, bundle_.to,
-      [this](Ray&& ray, const ReplyTo& to) { goOn(std::move(ray), to); },
-      [this](std::size_t i, const NextBlock& next) {
-        unit_.cells.want(next.cell);
-        waitingForCell_[static_cast<std::uint32_t>(next.cell)].add(std::move(bundle_.rays[i]), next.tEnter,
-                                                                   bundle_.to[i]);
-      });
+// A ray that needs what is not at hand: behind the horizon demand driven becomes data driven.
+void PyramidTask::goOn(Ray&& ray, const NextBlock& next, const ReplyTo& to) {
+  if (unit_.at.policy.secondariesTravel) {
+    unit_.replies.forward(unit_.at.ownerOf(next.voxel), std::move(ray), next.step, to);
+    return;
+  }
+  unit_.cells.want(next.cell);
+  waitingForCell_[static_cast<std::uint32_t>(next.cell)].add(std::move(ray), next.tEnter, to);
 }
 
 }  // namespace rayshade

@@ -1,9 +1,10 @@
 // The pyramid-trace task (Reinhard & Jansen, section 4, figure 4).
 //
-// Demand driven: it asks the host for work.  A tile of primary rays is one pyramid; its clip-list says which cells of the
+// Demand driven: it asks the host for work.  A tile is one pyramid of primary rays; its clip-list says which cells of the
 // bin-tree it may touch, near to far, without any object.  The cells up to the horizon are fetched into the object cache -
-// while they come, other pyramids are worked on - and then the rays are traced against them.  Behind the horizon rays go
-// over to the data-parallel voxels.
+// while they come, other pyramids are worked on - and then the rays are traced, with all that go on from their hits, as far as
+// what is at hand allows.  Rays that need more go over to the data-parallel voxels, or, if nothing but objects travels, wait
+// for the cell that they miss.
 //
 // A camera with a lens has no common apex: then the list is the union of the walks of the rays.
 // SPDX-License-Identifier: BSD-3-Clause
@@ -17,9 +18,7 @@ namespace rayshade {
 class PyramidTask {
  public:
   static constexpr double kHoldSeconds = 0;  // pyramids are waited for
-  using Accepted = TypeList<Configure, Finish, Ping, Weights, PrimaryRays, CellItems>;
-  static constexpr int kAhead =
-      4;  // pyramids asked for at a time: some are traced while others wait for cells
+  using Accepted = TypeList<Configure, Finish, Ping, Weights, TileWork, PrimaryRays, CellItems, Answer>;
 
   explicit PyramidTask(Link& link) : context_(link), unit_(context_, nullptr) {}
 
@@ -34,24 +33,25 @@ class PyramidTask {
   void on(TaskId from, Finish);
   void on(TaskId from, Ping);
   void on(TaskId from, Weights message);
+  void on(TaskId from, TileWork message);
   void on(TaskId from, PrimaryRays message);
+  void on(TaskId from, const Answer& message);
   void on(TaskId from, CellItems message);
 
  private:
   std::size_t beforeHorizon(const std::vector<CellId>& cells, std::size_t rays) const;
-  void tracePyramid();
-  void traceSecondaries(RayBundle& rays);
-  void goOn(Ray&& ray, const ReplyTo& to);
-  void finish(Tile& tile);
+  bool traceSome();
+  void traceWaiting(RayBundle& rays);
+  void queue(Ray&& ray, const ReplyTo& to);
+  void goOn(Ray&& ray, const NextBlock& next, const ReplyTo& to);
 
   TaskContext context_;
   TraceUnit unit_;
   TaskId host_ = kNobody;
-  WaitingTiles tiles_;
-  RayBundle secondaries_;                                        // to be traced, last in first out
-  RayBundle bundle_;                                             // being traced
-  std::unordered_map<std::uint32_t, RayBundle> waitingForCell_;  // secondary rays
-  std::uint64_t pyramids_ = 0, pyramidRays_ = 0, forwarded_ = 0;
+  RayBundle rays_;    // to be traced, last in first out
+  RayBundle bundle_;  // being traced
+  std::unordered_map<std::uint32_t, RayBundle> waitingForCell_;
+  std::uint64_t forwarded_ = 0;
 };
 
 }  // namespace rayshade

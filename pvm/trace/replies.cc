@@ -13,6 +13,10 @@ void Replies::begin(TaskId host) {
 
 void Replies::answer(ReplyTo to, Color color) {
   while (to.task == context_.link.self()) {
+    if (to.slot == 0) {
+      if (!tiles_.supply(to.record, color)) ++context_.outbox.traffic.refused;
+      return;
+    }
     LocalHit& hit = localHits_[to.record];
     const std::uint64_t number = to.record;
     if (hit.there.task != kNobody) {
@@ -40,7 +44,7 @@ void Replies::answer(ReplyTo to, Color color) {
 }
 
 ReplyTo Replies::externalReply(ReplyTo to) {
-  if (to.task != context_.link.self()) return to;
+  if (to.task != context_.link.self() || to.slot == 0) return to;
   LocalHit& hit = localHits_[to.record];
   if (hit.there.task == kNobody) hit.there = promote(hit);
   const ReplyTo there{hit.there.task, hit.there.record, to.slot};

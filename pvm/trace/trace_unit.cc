@@ -12,11 +12,18 @@ void TraceUnit::begin(TaskId host, Configure&& message, std::uint32_t cluster, s
         message.policy,
         std::move(message.request),
         std::move(message.cellBytes)};
+  rules = samplingRules(at.request.picture, at.request.seed, static_cast<std::uint32_t>(at.exposure.frame));
+  tiles.clear();
   cells.begin();
   space.begin(message.cellBounds, context.link.self());
   shades.begin(finder);
   replies.begin(host);
   shadows.begin();
+}
+
+void TraceUnit::wantTiles(TaskId host, unsigned threads) {
+  for (unsigned i = 0; i < std::max<unsigned>(kAhead, 3 * threads); ++i)
+    context.outbox.post(host, PyramidWanted{});
 }
 
 void TraceUnit::setWeights(const Weights& message) {
@@ -29,6 +36,8 @@ void TraceUnit::addTo(Report& report) const {
   report.combined = replies.combined();
   report.cache = cache.counts();
   report.shadowCache = space.shadowLookups();
+  report.pyramids = pyramids;
+  report.pyramidRays = pyramidRays;
 }
 
 }  // namespace rayshade

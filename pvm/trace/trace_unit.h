@@ -1,38 +1,59 @@
 // The parts that voxel-trace and pyramid-trace tasks have in common, put together: the way of a bundle through a task.
 //
-//   rays -> traceRays over `space` -> hits -> `shader` -> light, onward rays          core: rayshade/trace
-//                                  -> goes on elsewhere -> `replies`.forward
+//   rays -> `tracer` over `space` -> colours -> `replies` -> tiles, hits of this task, shade tasks, host
+//                                 -> open ends: rays that go on elsewhere, and hits that wait for them
 //   shadow rays that go on -> `shadows` -> other tasks, or `cells` on their way into `cache`
-//   colours -> `replies` -> local hits, shade tasks, host
+//
+// With --shading separate hits are not followed here: `shader` tells a shade task of each, as in Reinhard & Jansen, figure 3.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include "pvm/trace/hit_shader.h"
 #include "pvm/trace/ray_bundle.h"
+#include "rayshade/trace/tracer.h"
 
 namespace rayshade {
 
 struct TraceUnit {
+  // Tiles asked for at a time: some are traced while others wait for cells or colours.
+  static constexpr int kAhead = 4;
+
   // `share`: null for a task that holds no voxels.
   TraceUnit(TaskContext& context, const VoxelShare* share)
       : context(context),
         cells(context, at, cache),
         space(at, share, cache),
         shades(context, at),
-        replies(context, at, shades),
+        replies(context, at, shades, tiles),
         shadows(context, at, space, cells, counts),
-        shader(at, space, replies, shades, shadows, counts) {}
+        shader(at, space, replies, shades, shadows, counts),
+        tracer(space, at.settings, counts) {}
   TraceUnit(const TraceUnit&) = delete;
 
   // A new epoch of this host: everything that waits is dropped.  `finder`: this task's number among those that find intersections.
   void begin(TaskId host, Configure&& message, std::uint32_t cluster, std::uint32_t finder);
   void setWeights(const Weights& message);
 
-  // Traces at most kBundleSize rays.  What is resolved is shaded, its onward rays go to queue(ray, reply), or answered;
-  // goesOn(i, next) takes the others, which are still in their places.
+  // Traces at most kBundleSize rays and answers what is finished here.  queue(ray, reply) takes rays that begin at hits and are
+  // not followed at once, goesOn(ray, next, reply) those that go on elsewhere.
   template <class Queue, class GoesOn>
   void trace(std::span<Ray> rays, std::span<const double> begin, std::span<const ReplyTo> to, Queue queue,
-             GoesOn goesOn);
+             GoesOn goesOn) {
+    if (at.policy.shadeLocally) {
+      traceTrees(rays, begin, to, goesOn);
+    } else {
+      traceOnce(rays, begin, to, queue, goesOn);
+    }
+  }
+
+  // Traces the next samples of a tile, if any can be traced now.  False: none can.
+  template <class Queue, class GoesOn>
+  bool traceTile(Queue queue, GoesOn goesOn);
+  // Asks the host for the first tiles, enough for so many threads.
+  void wantTiles(TaskId host, unsigned threads = 1);
+  // Sends what has become of tiles to the host and asks for others; done(cells) for each tile.
+  template <class Done>
+  void sendTiles(TaskId host, Done done);
 
   // What this unit has counted.
   void addTo(Report& report) const;
@@ -43,31 +64,105 @@ struct TraceUnit {
   ObjectCache cache;
   CellFetcher cells;
   TaskSpace space;
+  TilesInHand tiles;
+  std::optional<SamplingRules> rules;  // of the picture of the epoch
   ShadeSender shades;
   Replies replies;
   ShadowBundles shadows;
   HitShader shader;
-  FoundHits found;  // room
+  Tracer tracer;
+  std::uint64_t pyramids = 0, pyramidRays = 0;
+
+ private:
+  template <class GoesOn>
+  void traceTrees(std::span<Ray> rays, std::span<const double> begin, std::span<const ReplyTo> to,
+                  GoesOn goesOn);
+  template <class Queue, class GoesOn>
+  void traceOnce(std::span<Ray> rays, std::span<const double> begin, std::span<const ReplyTo> to, Queue queue,
+                 GoesOn goesOn);
+
+  // Room that is used again.
+  FoundHits found_;
+  OpenEnds open_;
+  std::vector<ReplyTo> replyOf_;  // of open hits
+  std::vector<Ray> primaries_;
 };
 
+// Open hits stay with this task, or go over to a shade task if light is still to come.
+template <class GoesOn>
+void TraceUnit::traceTrees(std::span<Ray> rays, std::span<const double> begin, std::span<const ReplyTo> to,
+                           GoesOn goesOn) {
+  open_.clear();
+  Color seen[kBundleSize];
+  const std::uint64_t hitsBefore = counts.hits;
+  const RaySet unknown = tracer.trace(rays, begin, seen, open_);
+  replies.countCombined(counts.hits - hitsBefore - open_.hits.size());
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    if ((unknown >> i & 1) == 0) replies.answer(to[i], seen[i]);
+
+  replyOf_.resize(open_.hits.size());
+  const auto slotOf = [](ReplyTo hit, OpenEnds::Branch branch) {
+    hit.slot = branch == OpenEnds::Branch::transmitted ? kTransmittedSlot : kReflectedSlot;
+    return hit;
+  };
+  const auto replyTo = [&](const OpenEnds::Waiting& waiting) {
+    return waiting.hit == OpenEnds::kBundle ? to[waiting.ray] : slotOf(replyOf_[waiting.hit], waiting.branch);
+  };
+  for (std::size_t h = open_.hits.size(); h-- > 0;) {
+    OpenEnds::OpenHit& hit = open_.hits[h];
+    const bool lit = hit.shaded.pending.empty();
+    replyOf_[h] = lit ? replies.await(hit.shaded.sum, hit.back, replyTo(hit.to))
+                      : shader.handOver(hit.shaded, hit.ray, hit.back, replyTo(hit.to));
+    if (hit.transmitted) replies.answer(slotOf(replyOf_[h], OpenEnds::Branch::transmitted), *hit.transmitted);
+    if (hit.reflected) replies.answer(slotOf(replyOf_[h], OpenEnds::Branch::reflected), *hit.reflected);
+  }
+  for (OpenEnds::OpenRay& open : open_.rays) goesOn(std::move(open.ray), open.next, replyTo(open.to));
+}
+
 template <class Queue, class GoesOn>
-void TraceUnit::trace(std::span<Ray> rays, std::span<const double> begin, std::span<const ReplyTo> to,
-                      Queue queue, GoesOn goesOn) {
-  traceRays(space, rays, begin, found, counts);
+void TraceUnit::traceOnce(std::span<Ray> rays, std::span<const double> begin, std::span<const ReplyTo> to,
+                          Queue queue, GoesOn goesOn) {
+  traceRays(space, rays, begin, found_, counts);
   RayHit hits[kBundleSize];
   ReplyTo replyOf[kBundleSize];
   std::size_t count = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    if (!found.resolved(i)) {
-      goesOn(i, found.next[i]);
-    } else if (found.hits[i].found()) {
-      hits[count] = {&rays[i], found.hits[i], found.models[i]};
+    if (!found_.resolved(i)) {
+      goesOn(std::move(rays[i]), found_.next[i], to[i]);
+    } else if (found_.hits[i].found()) {
+      hits[count] = {&rays[i], found_.hits[i], found_.models[i]};
       replyOf[count++] = to[i];
     } else {
       replies.answer(to[i], missed(rays[i], at.settings));
     }
   }
   shader.shade(std::span(hits).first(count), std::span(replyOf).first(count), queue);
+}
+
+template <class Queue, class GoesOn>
+bool TraceUnit::traceTile(Queue queue, GoesOn goesOn) {
+  SampleId samples[kBundleSize];
+  RecordId records[kBundleSize];
+  const std::size_t count = tiles.next(samples, records);
+  if (count == 0) return false;
+  primaryRays(at.request.view, at.request.picture, at.request.seed, at.exposure.frame,
+              std::span(samples).first(count), primaries_);
+  counts.primaryRays += count;
+  ReplyTo to[kBundleSize];
+  for (std::size_t i = 0; i < count; ++i) to[i] = {context.link.self(), records[i], 0};
+  trace(primaries_, {}, std::span(to).first(count), queue, goesOn);
+  return true;
+}
+
+template <class Done>
+void TraceUnit::sendTiles(TaskId host, Done done) {
+  while (std::optional<TilesInHand::FinishedTile> tile = tiles.takeFinished()) {
+    ++pyramids;
+    pyramidRays += tile->colors.samples;
+    done(tile->cells);
+    context.outbox.post(host, TileDone{tile->number, std::move(tile->colors)});
+    context.outbox.post(host, PyramidWanted{});
+  }
 }
 
 }  // namespace rayshade

@@ -28,10 +28,13 @@ void VoxelTask::on(TaskId from, Configure message) {
     ++context_.outbox.traffic.refused;
     return;
   }
+  jobs_.stop();
   context_.beginEpoch(from, message);
   dropWork();
   host_ = from;
   const std::uint32_t number = message.number, perCluster = directory.tasksPerCluster();
+  takesTiles_ = inTiles(message) && directory.pyramidTasks.empty();
+  const unsigned threads = message.threads > 0 ? message.threads : context_.link.cores();
   unit_.begin(from, std::move(message), number / perCluster, number);
   context_.link.connect(unit_.at.directory.voxelTasks);
   context_.link.connect(unit_.at.directory.shadeTasks);
@@ -39,6 +42,9 @@ void VoxelTask::on(TaskId from, Configure message) {
   share_.prepare(unit_.at.exposure, unit_.at.tree, unit_.at.directory.voxels, number % perCluster);
   context_.outbox.post(from, Ready{context_.epoch, arithmeticFingerprint(), share_.objects(), share_.owned(),
                                    share_.leftOut()});
+  if (!takesTiles_) return;
+  if (threads > 1) jobs_.begin(*unit_.rules, threads);
+  unit_.wantTiles(from, threads);
 }
 
 void VoxelTask::on(TaskId, Weights message) { unit_.setWeights(message); }
@@ -67,8 +73,13 @@ void VoxelTask::on(TaskId, CellItems message) {
 }
 
 void VoxelTask::on(TaskId from, Finish) {
+  jobs_.stop();
   Report report = context_.report();
   unit_.addTo(report);
+  report.counts = report.counts + jobs_.counts();
+  report.combined += jobs_.counts().hits;
+  report.pyramids += jobs_.pyramids();
+  report.pyramidRays += jobs_.pyramidRays();
   report.cellsServed = cellsServed_;
   report.modelBytes = share_.bytes();
   context_.outbox.post(from, report);
@@ -80,17 +91,41 @@ void VoxelTask::on(TaskId from, Ping) {
   context_.outbox.flush();
 }
 
-void VoxelTask::on(TaskId, PrimaryRays&& work) {
+void VoxelTask::on(TaskId from, PrimaryRays&& work) {
   if (!samplesFit(work, unit_.at.request.picture)) {
     ++context_.outbox.traffic.refused;
     return;
   }
+  if (jobs_.active()) {
+    jobs_.add(std::move(work));
+    return;
+  }
   samples_.add(std::move(work));
+  context_.notePeak(waiting());
+  if (takesTiles_) context_.outbox.post(from, PyramidWanted{});
+}
+
+void VoxelTask::on(TaskId, TileWork message) {
+  if (!fits(message.tile, *unit_.rules) || unit_.tiles.has(message.number)) {
+    ++context_.outbox.traffic.refused;
+    return;
+  }
+  if (jobs_.active()) {
+    jobs_.add(message);
+    return;
+  }
+  const auto none = [](CellId) { return true; };
+  unit_.tiles.add(message.number, {message.tile, TileSampler(*unit_.rules, message.tile), {}, 0}, none, none);
   context_.notePeak(waiting());
 }
 
+void VoxelTask::on(TaskId, const Answer& message) {
+  unit_.replies.answer({context_.link.self(), message.record, 0}, message.color);
+}
+
 void VoxelTask::on(TaskId, RayTask&& task) {
-  if (task.to.task == context_.link.self()) {  // colours of rays that have left are sent elsewhere
+  if (task.to.task == context_.link.self() &&
+      task.to.slot != 0) {  // colours of its hits come from shade tasks
     ++context_.outbox.traffic.refused;
     return;
   }
@@ -105,21 +140,32 @@ void VoxelTask::on(TaskId, const ShadowTask& task) {
 }
 
 bool VoxelTask::work(double until) {
-  while (waiting() > 0) {
-    if (shadows_.bundles() > 0) {
-      traceShadows();
+  while (traceSome())
+    if (context_.link.now() >= until) return true;
+  return false;
+}
+
+// False: there is nothing that could be done now.
+bool VoxelTask::traceSome() {
+  jobs_.send(host_);
+  bool any = true;
+  if (shadows_.bundles() > 0) {
+    traceShadows();
+  } else if (rays_.size() > 0 || samples_.waiting() > 0) {
+    bundle_.clear();
+    if (rays_.size() > 0) {
+      rays_.takeDeepest(kBundleSize, bundle_);
     } else {
-      bundle_.clear();
-      if (rays_.size() > 0) {
-        rays_.takeDeepest(kBundleSize, bundle_);
-      } else {
-        takePrimaries();
-      }
-      traceBundle();
+      takePrimaries();
     }
-    if (context_.link.now() >= until) break;
+    traceBundle();
+  } else {
+    any = unit_.traceTile(
+        [this](Ray&& ray, const ReplyTo& to) { queue(std::move(ray), to); },
+        [this](Ray&& ray, const NextBlock& next, const ReplyTo& to) { goOn(std::move(ray), next, to); });
   }
-  return waiting() > 0;
+  unit_.sendTiles(host_, [](const std::vector<CellId>&) {});
+  return any;
 }
 
 void VoxelTask::flush() {
@@ -137,14 +183,17 @@ void VoxelTask::takePrimaries() {
 void VoxelTask::traceBundle() {
   unit_.trace(
       bundle_.rays, bundle_.begin, bundle_.to,
-      [this](Ray&& ray, const ReplyTo& to) {
-        rays_.add(std::move(ray), 0, to);
-        context_.notePeak(waiting());
-      },
-      [this](std::size_t i, const NextBlock& next) {
-        unit_.replies.forward(unit_.at.ownerOf(next.voxel), std::move(bundle_.rays[i]), next.step,
-                              bundle_.to[i]);
-      });
+      [this](Ray&& ray, const ReplyTo& to) { queue(std::move(ray), to); },
+      [this](Ray&& ray, const NextBlock& next, const ReplyTo& to) { goOn(std::move(ray), next, to); });
+}
+
+void VoxelTask::queue(Ray&& ray, const ReplyTo& to) {
+  rays_.add(std::move(ray), 0, to);
+  context_.notePeak(waiting());
+}
+
+void VoxelTask::goOn(Ray&& ray, const NextBlock& next, const ReplyTo& to) {
+  unit_.replies.forward(unit_.at.ownerOf(next.voxel), std::move(ray), next.step, to);
 }
 
 void VoxelTask::traceShadows() {

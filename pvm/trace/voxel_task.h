@@ -8,6 +8,7 @@
 #pragma once
 
 #include "pvm/trace/ray_queue.h"
+#include "pvm/trace/tile_jobs.h"
 #include "pvm/trace/trace_unit.h"
 
 namespace rayshade {
@@ -15,10 +16,11 @@ namespace rayshade {
 class VoxelTask {
  public:
   static constexpr double kHoldSeconds = 0;  // rays are waited for
-  using Accepted = TypeList<Forget, Items, Configure, Finish, Ping, Weights, PrimaryRays, RayTask, ShadowTask,
-                            CellWanted, CellItems>;
+  using Accepted = TypeList<Forget, Items, Configure, Finish, Ping, Weights, PrimaryRays, TileWork, RayTask,
+                            ShadowTask, CellWanted, CellItems, Answer>;
 
-  explicit VoxelTask(Link& link) : context_(link), unit_(context_, &share_) {}
+  explicit VoxelTask(Link& link)
+      : context_(link), unit_(context_, &share_), jobs_(context_, unit_.at, unit_.space) {}
 
   // The life in event_loop.h.
   void receive(const LinkEvent& event) { receiveEvent(*this, context_, event); }
@@ -35,25 +37,34 @@ class VoxelTask {
   void on(TaskId from, Finish);
   void on(TaskId from, Ping);
   void on(TaskId from, PrimaryRays&& work);
+  void on(TaskId from, TileWork message);
+  void on(TaskId from, const Answer& message);
   void on(TaskId from, RayTask&& task);
   void on(TaskId from, const ShadowTask& task);
   void on(TaskId from, Weights message);
   void on(TaskId from, CellWanted message);
   void on(TaskId from, CellItems message);
 
-  // Samples, rays and intersections with shadow rays.
-  std::uint64_t waiting() const { return samples_.waiting() + rays_.size() + shadows_.bundles(); }
+  // Samples, rays, intersections with shadow rays, tiles.
+  std::uint64_t waiting() const {
+    return samples_.waiting() + rays_.size() + shadows_.bundles() + unit_.tiles.size() + jobs_.left();
+  }
 
  private:
   void dropWork();
   void takePrimaries();
+  bool traceSome();
   void traceBundle();
+  void queue(Ray&& ray, const ReplyTo& to);
+  void goOn(Ray&& ray, const NextBlock& next, const ReplyTo& to);
   void traceShadows();
 
   TaskContext context_;
   VoxelShare share_;
   TraceUnit unit_;
+  TileJobs jobs_;  // with several threads, if all that there is to be met is here
   TaskId host_ = kNobody;
+  bool takesTiles_ = false;
   SampleQueue samples_;  // their rays are made when there is nothing deeper to do
   RayQueue rays_;
   ShadowQueue shadows_;

@@ -105,16 +105,13 @@ int run(const Options& options, Need& need) {
     Picture sum{area.width, area.height, {}};
     std::int32_t rows = 0;
     const FrameResult result = renderFrame(
-        scene, view, head.picture, frame, options.seed,
+        scene, {view, head.picture, options.seed}, frame, threadsOf(options),
         [&](const std::vector<Color>& row) {
           writer->row(row);
           if (report) appendRow(sum, row);
           if (everyRows > 0 && ++rows % everyRows == 0) sayLine(rows, area.height, area.width);
         },
-        [&](const Sampler& sampler) {
-          checkInterruption();
-          progress.show(sampler.completed());
-        });
+        [&](const Sampler& sampler) { progress.show(sampler.completed()); });
     writer->finish();
     times.trace = lap();
     progress.clear();

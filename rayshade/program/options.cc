@@ -2,6 +2,7 @@
 #include "rayshade/program/options.h"
 
 #include <limits>
+#include <thread>
 
 #include "rayshade/language/viewing.h"
 #include "rayshade/program/option_values.h"
@@ -11,9 +12,14 @@ namespace rayshade {
 namespace {
 
 constexpr std::int32_t kLargestDepth = 100'000'000;  // memory ends before
+constexpr int kMostThreads = 1024;
 constexpr double kHuge = 1e9;
 
 }  // namespace
+
+unsigned threadsOf(const Options& options) {
+  return options.threads.value_or(std::max(1u, std::thread::hardware_concurrency()));
+}
 
 void declareOptions(CLI::App& app, Options& o) {
   // CLI11 lets too few values through where the last ones count.
@@ -75,6 +81,9 @@ void declareOptions(CLI::App& app, Options& o) {
       ->group(picture);
   app.add_option("-N", o.frames, "number of frames")->check(wholeNumberFrom(1, kMostFrames))->group(picture);
 
+  app.add_option("--threads", o.threads, "threads that trace (default: as many as there are cores)")
+      ->check(wholeNumberFrom(1, kMostThreads))
+      ->group(quality);
   app.add_option("-S", o.samples, "samples along each side of a pixel")
       ->check(wholeNumberFrom(1, kMaxSamplesPerSide))
       ->group(quality);

@@ -18,7 +18,8 @@ struct Options {
   std::string outputFile;  // -O; empty: what the scene says, else standard output
   std::uint64_t seed = 0;
   bool quiet = false, verbose = false;
-  std::string verboseFile;  // -V: the report goes there
+  std::optional<unsigned> threads;  // that trace
+  std::string verboseFile;          // -V: the report goes there
 
   // What is said on the command line; nothing: the scene file decides.
   std::vector<int> resolution, window;
@@ -35,6 +36,9 @@ void declareOptions(CLI::App& app, Options& options);
 
 // Puts what was said over what the scene file says.  Throws SceneError where the two do not go together.
 void applyOptions(const Options& options, SceneHead& head);
+
+// How many threads trace: what was said, else as many as there are cores.
+unsigned threadsOf(const Options& options);
 
 // The name of the scene in messages.
 std::string sceneName(const Options& options);

@@ -26,7 +26,7 @@ class Reserve {
   void release() { ::operator delete(std::exchange(bytes_, nullptr)); }
 
  private:
-  void* bytes_ = ::operator new(std::size_t{1} << 20);
+  void* bytes_ = ::operator new (std::size_t{1} << 20);
 };
 
 std::string megabytes(double bytes) {

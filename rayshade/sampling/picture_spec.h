@@ -71,11 +71,11 @@ template <class Archive>
 void serialize(Archive& archive, PixelFilter& f) {
   archive(f.gaussian, f.width);
 }
-// What samplePosition() looks at; windows and limits are the host's business.
+// What samples and their rays depend on.
 template <class Archive>
 void serialize(Archive& archive, PictureSpec& p) {
-  archive(p.width, p.height, p.samplesPerSide, p.jitter, p.filter, p.firstFrame, p.frameLength, p.startTime,
-          p.shutter);
+  archive(p.width, p.height, p.window, p.crop, p.samplesPerSide, p.jitter, p.filter, p.contrast, p.firstFrame,
+          p.frameLength, p.startTime, p.shutter);
   if constexpr (Archive::kReading) {
     if (p.samplesPerSide < 1 || p.samplesPerSide > kMaxSamplesPerSide) {
       p.samplesPerSide = 1;

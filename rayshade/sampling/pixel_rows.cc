@@ -11,6 +11,19 @@ namespace {
 // The cell of a pixel's first sample has a key of its own, apart from those of the cells.
 constexpr std::uint32_t kNoCell = 0xffffffffu;
 
+std::uint64_t keyOf(Place place) {
+  return static_cast<std::uint64_t>(place.y) << 32 | static_cast<std::uint32_t>(place.x);
+}
+
+// Always added in the same order: the first sample, then the others by cell.
+Color filtered(const std::vector<double>& weights, std::size_t firstCell, Color first,
+               const std::vector<Color>& colors) {
+  Color sum = first * weights[firstCell];
+  for (std::size_t cell = 0; cell < weights.size(); ++cell)
+    if (cell != firstCell) sum = sum + colors[cell] * weights[cell];
+  return sum;
+}
+
 }  // namespace
 
 SamplingRules samplingRules(const PictureSpec& spec, std::uint64_t seed, std::uint32_t frame) {
@@ -21,99 +34,121 @@ SamplingRules samplingRules(const PictureSpec& spec, std::uint64_t seed, std::ui
   if (side < 1 || side > kMaxSamplesPerSide)
     throw std::invalid_argument("there must be 1 to 8 samples per side of a pixel");
   const bool refining = side > 1 && area->width > 2 && area->height > 2;
-  return {*area,
-          side,
-          seed,
-          frame,
-          spec.contrast,
-          filterWeights(spec.filter, side),
-          ~std::uint64_t{0} >> (64 - side * side),
-          refining,
-          area->height + (refining ? 1 : 0)};
+  return {*area,         side,
+          seed,          frame,
+          spec.contrast, filterWeights(spec.filter, side),
+          refining,      area->height + (refining ? 1 : 0)};
 }
 
-void PixelRows::demandAll(Row& row, Pixel& pixel) {
-  pixel.full = true;
-  if (!isWhole(pixel)) ++row.incomplete;
-  const bool firstCounted = (pixel.given & pixel.firstBit()) != 0;
-  counts.needed += static_cast<std::uint64_t>(rules_.side * rules_.side - firstCounted);
-  if (rules_.side > 1) ++counts.supersampled;
+// Row 0, the last row and the first and last column get all of their samples; the line below the picture (sampler.cc) one
+// for each pixel, and none at its two ends.
+Asked askedOf(const SamplingRules& rules, Place place) {
+  const PixelArea& area = rules.area;
+  const bool side = place.x == 0 || place.x == area.width - 1;
+  if (place.y == area.height) return side ? Asked::nothing : Asked::first;
+  if (rules.side == 1) return Asked::first;
+  const bool end = place.y == 0 || place.y == area.height - 1;
+  return side || end || !rules.refining ? Asked::all : Asked::first;
+}
+
+std::int32_t firstCell(const SamplingRules& rules, Place place) {
+  if (rules.side == 1 || askedOf(rules, place) == Asked::all) return 0;
+  const RandomKey key = sampleKey(rules.seed, rules.frame, static_cast<std::uint32_t>(rules.area.x + place.x),
+                                  static_cast<std::uint32_t>(rules.area.y + place.y), kNoCell);
+  return static_cast<std::int32_t>(uniform(key, Dimension::firstCell) * rules.cells());
 }
 
 void PixelRows::add() {
-  const PixelArea& area = rules_.area;
-  const std::int32_t cells = rules_.side * rules_.side, y = end();
+  const std::int32_t y = end();
   Row& row = rows_.emplace_back();
   if (!spare_.empty()) {
-    row.pixels = std::move(spare_.back());
+    row = std::move(spare_.back());
     spare_.pop_back();
   }
-  row.pixels.clear();
-  row.pixels.resize(static_cast<std::size_t>(area.width));
-  for (std::int32_t x = 0; x < area.width; ++x) {
-    const bool side = x == 0 || x == area.width - 1, end = y == 0 || y == area.height - 1;
-    if (y < area.height && (side || end || !rules_.refining)) {
-      demandAll(row, row.pixels[static_cast<std::size_t>(x)]);
-    } else if (!side) {
-      ++counts.needed;
-      if (cells == 1) continue;
-      const RandomKey key = sampleKey(rules_.seed, rules_.frame, static_cast<std::uint32_t>(area.x + x),
-                                      static_cast<std::uint32_t>(area.y + y), kNoCell);
-      row.pixels[static_cast<std::size_t>(x)].firstCell =
-          static_cast<std::uint8_t>(uniform(key, Dimension::firstCell) * cells);
-    }
+  const auto width = static_cast<std::size_t>(width_);
+  row.first.resize(width);
+  if (rules_.side > 1) row.whole.resize(width);
+  row.flags.assign(width, 0);
+  row.incomplete = width_;
+  for (std::int32_t x = left_; x < right(); ++x) {
+    const Asked asked = askedOf(rules_, {y, x});
+    counts.needed += asked == Asked::first;
+    if (asked == Asked::all) demandAll({y, x});
   }
 }
 
-std::optional<Place> PixelRows::supply(const SampleId& id, Color color) {
-  const std::int32_t side = rules_.side;
+bool PixelRows::demandAll(Place place) {
+  Row& row = this->row(place.y);
+  std::uint8_t& flags = row.flags[column(place)];
+  if ((flags & kFull) != 0) return false;
+  const bool firstCounted = askedOf(rules_, place) == Asked::first;
+  counts.needed += static_cast<std::uint64_t>(rules_.cells() - firstCounted);
+  ++counts.supersampled;
+  const bool wasKnown = (flags & kFirst) != 0, isKnown = (flags & kWhole) != 0;
+  row.incomplete += wasKnown - isKnown;
+  flags |= kFull;
+  return !isKnown;
+}
+
+// The optics sees to it that this is never needed (shading/combine.cc).
+Color PixelRows::finite(Color color) {
+  if (isFinite(color)) return color;
+  ++counts.notFinite;
+  return kBlack;
+}
+
+void PixelRows::supplyFirst(Place place, Color color) {
+  Row& row = this->row(place.y);
+  std::uint8_t& flags = row.flags[column(place)];
+  if ((flags & kFirst) != 0) return;
+  row.first[column(place)] = finite(color) * (rules_.side == 1 ? rules_.weights[0] : 1.0);
+  row.incomplete -= (flags & kFull) == 0;
+  flags |= kFirst;
+}
+
+void PixelRows::supplyWhole(Place place, Color color) {
+  Row& row = this->row(place.y);
+  std::uint8_t& flags = row.flags[column(place)];
+  if ((flags & kWhole) != 0) return;
+  row.whole[column(place)] = color;
+  row.incomplete -= (flags & kFull) != 0;
+  flags |= kWhole;
+}
+
+bool PixelRows::supply(const SampleId& id, Color color) {
   const std::int64_t x = std::int64_t{id.x} - rules_.area.x, y = std::int64_t{id.y} - rules_.area.y;
-  if (x < 0 || x >= rules_.area.width || y < first_ || y >= end() || id.cell < 0 || id.cell >= side * side)
-    return std::nullopt;
+  if (x < left_ || x >= right() || y < first_ || y >= end() || id.cell < 0 || id.cell >= rules_.cells())
+    return false;
   const Place place{static_cast<std::int32_t>(y), static_cast<std::int32_t>(x)};
-  Row& row = rowOf(place);
-  Pixel& pixel = row.pixels[static_cast<std::size_t>(x)];
+  const std::int32_t first = firstCell(rules_, place);
   const std::uint64_t bit = std::uint64_t{1} << id.cell;
-  if ((pixel.given & bit) == 0 || (pixel.come & bit) != 0) return std::nullopt;
-  pixel.come |= bit;
-  // The optics sees to it that this never happens (shading/combine.cc).
-  if (!isFinite(color)) {
-    color = kBlack;
-    ++counts.notFinite;
+  if (isWhole(place)) return false;
+  if (id.cell == first) {
+    if (has(place, kFirst)) return false;
+    supplyFirst(place, color);
+    if (rules_.side == 1 || !isFull(place)) return true;
   }
-
-  if (side == 1) {
-    pixel.first = color * rules_.weights[0];
-  } else if (id.cell == pixel.firstCell) {
-    pixel.first = color;
-  } else {
-    if (!pixel.samples) pixel.samples = std::make_unique<Color[]>(rules_.weights.size());
-    pixel.samples[static_cast<std::size_t>(id.cell)] = color;
+  Cells& cells = come_[keyOf(place)];
+  cells.colors.resize(rules_.weights.size());
+  if (id.cell != first) {
+    if ((cells.come & bit) != 0) return false;
+    cells.come |= bit;
+    cells.colors[static_cast<std::size_t>(id.cell)] = finite(color);
   }
-  if (!isWhole(pixel)) return id.cell == pixel.firstCell ? std::optional(place) : std::nullopt;
-  if (side > 1) {
-    const Color whole = filtered(pixel);
-    pixel.samples = std::make_unique<Color[]>(1);
-    pixel.samples[0] = whole;
-  }
-  if (pixel.full) --row.incomplete;
-  return place;
-}
-
-// Always added in the same order: the first sample, then the others by cell.
-Color PixelRows::filtered(const Pixel& pixel) const {
-  const std::vector<double>& weights = rules_.weights;
-  Color sum = pixel.first * weights[pixel.firstCell];
-  for (std::size_t cell = 0; cell < weights.size(); ++cell)
-    if (cell != pixel.firstCell) sum = sum + pixel.samples[cell] * weights[cell];
-  return sum;
+  if (!has(place, kFirst) || std::popcount(cells.come) + 1 < rules_.cells()) return true;
+  supplyWhole(place, filtered(rules_.weights, static_cast<std::size_t>(first),
+                              row(place.y).first[column(place)], cells.colors));
+  come_.erase(keyOf(place));
+  return true;
 }
 
 bool PixelRows::takeFirst(std::vector<Color>& colors) {
   if (rows_.empty() || rows_.front().incomplete != 0) return false;
-  colors.clear();
-  for (const Pixel& pixel : rows_.front().pixels) colors.push_back(pixel.full ? pixel.whole() : pixel.first);
-  spare_.push_back(std::move(rows_.front().pixels));
+  Row& row = rows_.front();
+  colors = row.first;
+  for (std::size_t x = 0; x < row.flags.size(); ++x)
+    if ((row.flags[x] & kFull) != 0) colors[x] = row.whole[x];
+  spare_.push_back(std::move(row));
   rows_.pop_front();
   ++first_;
   return true;

@@ -1,10 +1,16 @@
-// The pixels that are held: rows from the first one that is not taken, and what has come of each pixel.
+// The pixels that are held, of the whole width of a picture or of a part of it: what has come of each.
+//
+// Arrays of colours, row by row: of each pixel its first sample, and the whole of it once all of its samples have come.  While
+// samples of a pixel come one by one, they are kept apart until the last has come.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <bit>
 #include <compare>
 #include <deque>
-#include <memory>
+#include <span>
+#include <unordered_map>
+#include <vector>
 
 #include "rayshade/sampling/sample_position.h"
 
@@ -12,7 +18,7 @@ namespace rayshade {
 
 struct SamplerCounts {
   std::uint64_t needed = 0;        // samples that the rule asks for, whatever ran ahead
-  std::uint64_t given = 0;         // samples that next() has given, some perhaps in vain
+  std::uint64_t given = 0;         // samples that were traced or given out to be, some perhaps in vain
   std::uint64_t notFinite = 0;     // colours that were no finite numbers: black in their place
   std::uint64_t supersampled = 0;  // pixels that got all of their samples (none when there is one in a pixel)
 };
@@ -25,9 +31,10 @@ struct SamplingRules {
   std::uint32_t frame = 0;
   Color contrast;
   std::vector<double> weights;  // by cell
-  std::uint64_t allCells = 1;   // one bit each
   bool refining = false;        // there are pixels with a single sample
   std::int32_t rowCount = 0;    // with the line below the picture, if it is traced
+
+  std::int32_t cells() const { return side * side; }
 };
 // Throws std::invalid_argument when pixelArea(spec) is nothing or there are not 1..8 samples per side.
 SamplingRules samplingRules(const PictureSpec& spec, std::uint64_t seed, std::uint32_t frame);
@@ -37,57 +44,75 @@ struct Place {  // of a pixel, from the upper left of the area
   friend auto operator<=>(const Place&, const Place&) = default;
 };
 
-// Small: all pixels of a few dozen rows are held, and looked at again and again.
-struct Pixel {
-  Color first;                       // its first sample, which stands for all of it until it is refined
-  std::uint64_t given = 0;           // cells, one bit each
-  std::uint64_t come = 0;            // cells, one bit each
-  std::unique_ptr<Color[]> samples;  // by cell, while they come; then all of them, filtered, in one
-  std::uint8_t firstCell = 0;
-  bool full = false;  // the rule demands all samples
-
-  std::uint64_t firstBit() const { return std::uint64_t{1} << firstCell; }
-  bool hasFirst() const { return (come & firstBit()) != 0; }
-  // The colour when all samples have come: of one sample it is that.
-  Color whole() const { return samples ? samples[0] : first; }
-};
+// What is asked of a pixel before anything is known of it.
+enum class Asked : std::uint8_t { nothing, first, all };
+Asked askedOf(const SamplingRules& rules, Place place);
+// The cell of the first sample: 0 where all are asked for, else chosen at random.
+std::int32_t firstCell(const SamplingRules& rules, Place place);
+inline SampleId sampleAt(const SamplingRules& rules, Place place, std::int32_t cell) {
+  return {rules.area.x + place.x, rules.area.y + place.y, cell};
+}
 
 class PixelRows {
  public:
-  explicit PixelRows(SamplingRules rules) : rules_(std::move(rules)) {}
+  // Columns left .. left + width - 1, from row `top` on; no row is held yet.
+  PixelRows(SamplingRules rules, std::int32_t left, std::int32_t width, std::int32_t top = 0)
+      : rules_(std::move(rules)), left_(left), width_(width), first_(top) {}
 
   const SamplingRules& rules() const { return rules_; }
   SamplerCounts counts;
 
+  std::int32_t left() const { return left_; }
+  std::int32_t right() const { return left_ + width_; }  // one beyond
   std::int32_t first() const { return first_; }
   std::int32_t end() const { return first_ + static_cast<std::int32_t>(rows_.size()); }
   bool held(std::int32_t y) const { return y >= first_ && y < end(); }
-  Pixel& at(Place place) { return rowOf(place).pixels[static_cast<std::size_t>(place.x)]; }
-  const Pixel& at(Place place) const { return const_cast<PixelRows*>(this)->at(place); }
-  bool isWhole(const Pixel& pixel) const { return pixel.come == rules_.allCells; }
+
+  // Requires that the row of the place is held, as all that follows.
+  bool isFull(Place place) const { return has(place, kFull); }    // all of its samples are demanded
+  bool isWhole(Place place) const { return has(place, kWhole); }  // and have come
+  bool isKnown(Place place) const { return has(place, isFull(place) ? kWhole : kFirst); }
+  Color color(Place place) const {
+    return isFull(place) ? whole(place) : first(place);
+  }  // of one that is known
+  Color first(Place place) const { return row(place.y).first[column(place)]; }
+  Color whole(Place place) const { return row(place.y).whole[column(place)]; }
 
   void add();  // the next row
-  // All samples of a pixel are wanted.
-  void demandAll(Place place) { demandAll(rowOf(place), at(place)); }
-  // The colour of a sample.  Its place, if more is known of the pixel than before.
-  std::optional<Place> supply(const SampleId& id, Color color);
+  // All samples of a pixel are demanded.  False: they were before, or have come already.
+  bool demandAll(Place place);
+  // The colour of a sample.  False: it has come before or does not belong here, and is ignored.
+  bool supply(const SampleId& id, Color color);
+  // The same for a first sample, and for all samples of a pixel, filtered.
+  void supplyFirst(Place place, Color color);
+  void supplyWhole(Place place, Color color);
   // The first row, and its memory is used again.  False: it still waits for samples.
   bool takeFirst(std::vector<Color>& colors);
 
  private:
+  static constexpr std::uint8_t kFirst = 1, kWhole = 2, kFull = 4;
   struct Row {
-    std::vector<Pixel> pixels;
-    std::int32_t incomplete = 0;  // full pixels that still wait for samples
+    std::vector<Color> first, whole;
+    std::vector<std::uint8_t> flags;
+    std::int32_t incomplete = 0;  // pixels whose colour is not known
+  };
+  struct Cells {
+    std::uint64_t come = 0;  // one bit each
+    std::vector<Color> colors;
   };
 
-  void demandAll(Row& row, Pixel& pixel);
-  Row& rowOf(Place place) { return rows_[static_cast<std::size_t>(place.y - first_)]; }
-  Color filtered(const Pixel& pixel) const;
+  const Row& row(std::int32_t y) const { return rows_[static_cast<std::size_t>(y - first_)]; }
+  Row& row(std::int32_t y) { return rows_[static_cast<std::size_t>(y - first_)]; }
+  std::size_t column(Place place) const { return static_cast<std::size_t>(place.x - left_); }
+  bool has(Place place, std::uint8_t flag) const { return (row(place.y).flags[column(place)] & flag) != 0; }
+  Color finite(Color color);
 
   SamplingRules rules_;
+  std::int32_t left_, width_;
   std::deque<Row> rows_;
-  std::int32_t first_ = 0;                 // the number of rows_[0]
-  std::vector<std::vector<Pixel>> spare_;  // of rows that were taken
+  std::int32_t first_;                             // the number of rows_[0]
+  std::unordered_map<std::uint64_t, Cells> come_;  // samples of pixels of which not all have come
+  std::vector<Row> spare_;                         // rows that were taken
 };
 
 }  // namespace rayshade

@@ -1,69 +1,67 @@
 // Which samples of the picture are wanted next, and what the pixels become of them.
 //
-// One state machine for the sequential renderer and for the tasks: samples go out with next(), their colours
-// come back with supply() in any order, finished rows leave with takeRow().  The rows depend on the colours
-// alone, never on the order or on how many samples are on the way.
+// One state machine for the sequential renderer and for the tasks.  Tiles go out with nextTile(), their colours come back with
+// supply() in any order, finished rows leave with takeRow().  The rows depend on the colours alone, never on the order or on
+// how much is on the way.
 //
 // Adaptive supersampling (rayshade 4): row 0, the last row and the first and last column get all of their
 // side^2 samples, every other pixel first gets one in a cell chosen at random.  Then it is decided which of them get all
-// of theirs (cross_sweep.h), in a strict order; only the tracing runs ahead.
+// of theirs (cross_sweep.h), in a strict order.  Whoever traces a tile decides most of that (tile_sampler.h); the exact sweep
+// over the picture trails behind, and nextSamples() gives what it finds missing.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "rayshade/sampling/cross_sweep.h"
+#include "rayshade/sampling/tile_sampler.h"
 
 namespace rayshade {
 
 // How much of a frame there is.
 struct Completed {
   std::int32_t rows = 0, allRows = 0;
-  std::uint64_t samples = 0, expected = 0;  // given out; in all, as far as can be told
+  std::uint64_t samples = 0, expected = 0;  // traced; in all, as far as can be told
 };
 
 class Sampler {
  public:
-  // Whether pixels that will probably be refined are asked for before that is decided: pays when there are
-  // many samples on the way (a few percent are traced in vain), needless when they are traced one by one.
-  enum class Guessing : bool { no, yes };
+  static constexpr std::int32_t kTileSide = 32;  // pixels
 
   // Throws what samplingRules() throws.
   Sampler(const PictureSpec& spec, std::uint64_t seed, std::uint32_t frame,
-          Guessing guessing = Guessing::yes);
+          std::int32_t tileSide = kTileSide);
 
-  const PixelArea& area() const { return rows_.rules().area; }
+  const SamplingRules& rules() const { return rows_.rules(); }
+  const PixelArea& area() const { return rules().area; }
   const SamplerCounts& counts() const { return rows_.counts; }
-  // Taken is that the pixels that have not begun will need as many samples as those that have.
+  // Taken is that the pixels that have not come will need as many samples as those that have.
   Completed completed() const;
 
-  // Puts samples to be traced into `out` and says how many.  None: wait for colours or take rows first (rows
-  // that are not taken hold back those far below, so that memory stays bounded).  Each sample is given once.
-  // Neighbours come close together: blocks of 8 x 8 pixels, all cells of a pixel in a row.
-  std::size_t next(std::span<SampleId> out);
-  bool next(SampleId& out) { return next(std::span(&out, 1)) == 1; }
+  // The next tile, from top to bottom.  Nothing: all have been given, or rows must be taken first (rows that are not taken hold
+  // back those far below, so that memory stays bounded).  Each tile is given once.
+  std::optional<Tile> nextTile();
+  // The colours of a tile that was given and has not come before.  Requires fit(colors, tile).
+  void supply(const Tile& tile, const TileColors& colors);
 
-  // The colour of a sample.  One that was not given out, has come before or is no longer of use is ignored.
+  // Samples that no tile has traced and that are needed: puts them into `out` and says how many.  Each is given once.
+  std::size_t nextSamples(std::span<SampleId> out);
+  std::size_t missing() const;  // how many there are now
+  // The colour of one of them.  One that has come before or is no longer of use is ignored.
   void supply(const SampleId& id, Color color);
 
   // The next finished row, from top to bottom.  Ends the use of its samples.
   bool takeRow(std::vector<Color>& row);
 
-  // All rows have been taken; samples still on the way are of no use.
-  bool finished() const { return rows_.first() == area().height; }
+  // All rows have been taken; what is still on the way is of no use.
+  bool finished() const { return rows_.first() >= area().height; }
 
  private:
-  bool give(SampleId& out);
-  bool giveCell(Pixel& pixel, Place place, SampleId& out);
-  bool giveAhead(SampleId& out);
-  void stepAhead();
-
   PixelRows rows_;
   CrossSweep sweep_;
-  bool guessing_;
+  std::int32_t tileSide_;
   std::int32_t rowsAhead_;  // how far rows are held beyond the first that is not taken
-  std::uint64_t begunInside_ = 0, begunOnBorder_ = 0;  // pixels
-  Place ahead_{0, 0};           // the next pixel to get its first sample, or all if it is on the border
-  std::deque<Place> demanded_;  // full pixels that are not given completely, in order of decision
-  std::set<Place> guesses_;     // pixels that are probably full some day
+  Tile next_;               // its place; the size follows from it
+  std::uint64_t comeInside_ = 0, comeOnBorder_ = 0;  // pixels
+  std::deque<Place> demanded_;  // pixels whose other samples are still to be given, in order of decision
+  std::int32_t cell_ = 0;       // the next one of the first of them
 };
 
 }  // namespace rayshade

@@ -32,9 +32,20 @@ Ray primaryRay(const View& view, const SamplePosition& at, std::int32_t frame);
 void primaryRays(const View& view, const PictureSpec& picture, std::uint64_t seed, std::int32_t frame,
                  std::span<const SampleId> samples, std::vector<Ray>& rays);
 
+// What is asked for: from here to rays of samples.
+struct FrameRequest {
+  View view;
+  PictureSpec picture;
+  std::uint64_t seed = 0;
+};
+
 template <class Archive>
 void serialize(Archive& archive, View& v) {
   archive(v.eye, v.first, v.right, v.down, v.lensRight, v.lensUp, v.focalDistance);
+}
+template <class Archive>
+void serialize(Archive& archive, FrameRequest& r) {
+  archive(r.view, r.picture, r.seed);
 }
 
 }  // namespace rayshade

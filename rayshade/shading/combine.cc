@@ -40,10 +40,10 @@ ReturnPath returnPath(const Ray& ray, double t, const OnwardRays& onward, const 
   return back;
 }
 
-Intersection describe(const Ray& ray, double t, const SurfacePoint& at, const OnwardRays& onward,
-                      LightVisibilities visibility, const SceneSettings& settings) {
+Intersection describe(const Ray& ray, const ReturnPath& back, const SurfacePoint& at,
+                      LightVisibilities visibility) {
   Intersection hit;
-  hit.back = returnPath(ray, t, onward, settings);
+  hit.back = back;
   hit.direction = ray.direction;
   hit.key = ray.key;
   hit.sample = ray.sample;

@@ -45,8 +45,8 @@ struct Gathered {
 };
 
 ReturnPath returnPath(const Ray& ray, double t, const OnwardRays& onward, const SceneSettings& settings);
-Intersection describe(const Ray& ray, double t, const SurfacePoint& at, const OnwardRays& onward,
-                      LightVisibilities visibility, const SceneSettings& settings);
+Intersection describe(const Ray& ray, const ReturnPath& back, const SurfacePoint& at,
+                      LightVisibilities visibility);
 // The same once the lights have been added.
 inline Intersection afterLights(Color sum, const ReturnPath& back) {
   Intersection hit;

@@ -1,35 +1,113 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rayshade/trace/render.h"
 
-#include "rayshade/trace/tracer.h"
+#include <memory>
+
+#include "rayshade/base/crew.h"
+#include "rayshade/base/interruption.h"
 
 namespace rayshade {
+namespace {
+
+constexpr std::size_t kTilesEach = 3;        // of a thread: one that is traced, and others that wait
+constexpr std::size_t kSamplesAtOnce = 256;  // that no tile has traced
+
+}  // namespace
 
 Exposure exposureOf(const PictureSpec& picture, std::int32_t frame) {
   const double opens = picture.startTime + frame * picture.frameLength;
   return {opens, opens + std::max(picture.shutter, 0.0), frame};
 }
 
-FrameResult renderFrame(Scene& scene, const View& view, const PictureSpec& picture, std::int32_t frame,
-                        std::uint64_t seed, const std::function<void(const std::vector<Color>&)>& row,
-                        const std::function<void(const Sampler&)>& progress) {
-  Sampler sampler(picture, seed, static_cast<std::uint32_t>(frame), Sampler::Guessing::no);
-  FrameResult result;
-  Tracer tracer(scene, scene.settings, result.counts);
-  std::vector<Color> finished;
+void SampleTracer::trace(std::span<const SampleId> samples, std::span<Color> seen) {
+  checkInterruption();
+  counts.primaryRays += samples.size();
+  primaryRays(request_.view, request_.picture, request_.seed, frame_, samples, rays_);
+  tracer_.trace(rays_, {}, seen, none_);
+}
+
+TileColors SampleTracer::trace(const SamplingRules& rules, const Tile& tile) {
+  TileSampler sampler(rules, tile);
   SampleId samples[kBundleSize];
   Color seen[kBundleSize];
-  std::vector<Ray> rays;
-  while (!sampler.finished()) {
-    while (const std::size_t count = sampler.next(samples)) {
-      result.counts.primaryRays += count;
-      primaryRays(view, picture, seed, frame, std::span(samples).first(count), rays);
-      tracer.trace(rays, seen);
-      for (std::size_t i = 0; i < count; ++i) sampler.supply(samples[i], seen[i]);
-      if (progress) progress(sampler);
-    }
-    while (sampler.takeRow(finished)) row(finished);
+  while (const std::size_t count = sampler.next(samples)) {
+    trace(std::span(samples).first(count), seen);
+    for (std::size_t i = 0; i < count; ++i) sampler.supply(samples[i], seen[i]);
   }
+  return sampler.colors();
+}
+
+void SampleTracer::trace(const SamplingRules& rules, Work& work) {
+  if (work.samples.empty()) work.tileColors = trace(rules, work.tile);
+  work.colors.resize(work.samples.size());
+  for (std::size_t first = 0; first < work.samples.size(); first += kBundleSize) {
+    const std::size_t count = std::min(kBundleSize, work.samples.size() - first);
+    trace(std::span(work.samples).subspan(first, count), std::span(work.colors).subspan(first, count));
+  }
+}
+
+namespace {
+
+// Tiles, unless there are enough samples that no tile has traced, or no tile may be given.
+std::optional<Work> nextWork(Sampler& sampler) {
+  Work work;
+  if (sampler.missing() < kSamplesAtOnce) {
+    if (const std::optional<Tile> tile = sampler.nextTile()) {
+      work.tile = *tile;
+      return work;
+    }
+  }
+  work.samples.resize(kSamplesAtOnce);
+  work.samples.resize(sampler.nextSamples(work.samples));
+  if (work.samples.empty()) return std::nullopt;
+  return work;
+}
+
+void supply(Sampler& sampler, const Work& work) {
+  if (work.samples.empty()) sampler.supply(work.tile, work.tileColors);
+  for (std::size_t i = 0; i < work.samples.size(); ++i) sampler.supply(work.samples[i], work.colors[i]);
+}
+
+}  // namespace
+
+FrameResult renderFrame(Scene& scene, const FrameRequest& request, std::int32_t frame, unsigned threads,
+                        const std::function<void(const std::vector<Color>&)>& row,
+                        const std::function<void(const Sampler&)>& progress) {
+  Sampler sampler(request.picture, request.seed, static_cast<std::uint32_t>(frame));
+  const SamplingRules& rules = sampler.rules();
+  std::vector<std::unique_ptr<SampleTracer>> tracers(threads);  // each made by the thread that uses it
+  std::mutex mutex;                                             // of `done`
+  std::vector<Work> done, arrived;
+  std::vector<Color> finished;
+  Crew crew(threads);  // the last one: it ends before what its jobs use
+
+  while (!sampler.finished()) {
+    while (crew.left() < kTilesEach * threads) {
+      std::optional<Work> next = nextWork(sampler);
+      if (!next) break;
+      crew.give([&, work = std::move(*next)](unsigned worker) mutable {
+        if (!tracers[worker])
+          tracers[worker] = std::make_unique<SampleTracer>(scene, scene.settings, request, frame);
+        tracers[worker]->trace(rules, work);
+        const std::lock_guard lock(mutex);
+        done.push_back(std::move(work));
+      });
+    }
+    if (!crew.work()) crew.waitForOne();
+    crew.rethrow();
+    {
+      const std::lock_guard lock(mutex);
+      arrived.swap(done);
+    }
+    for (const Work& work : arrived) supply(sampler, work);
+    arrived.clear();
+    while (sampler.takeRow(finished)) row(finished);
+    if (progress) progress(sampler);
+  }
+
+  FrameResult result;
+  for (const auto& tracer : tracers)
+    if (tracer) result.counts = result.counts + tracer->counts;
   result.samples = sampler.counts();
   return result;
 }

@@ -34,7 +34,7 @@ std::vector<Color> renderTiny(const std::string& example) {
   scene.settings = head.settings;
   scene.prepare(exposureOf(head.picture, 0));
   std::vector<Color> pixels;
-  renderFrame(scene, *viewOf(head.camera, head.picture), head.picture, 0, 0,
+  renderFrame(scene, {*viewOf(head.camera, head.picture), head.picture}, 0, 1,
               [&](const std::vector<Color>& row) { pixels.insert(pixels.end(), row.begin(), row.end()); });
   return pixels;
 }

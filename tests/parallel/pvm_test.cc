@@ -111,7 +111,7 @@ constexpr const char* kLong = "-R 100 75 -S 3 -T 0 0 0 scenes/gallery/glass-and-
 TEST_F(Pvm, APlanForHostsThatAreNotThereStartsNothing) {
   std::ofstream(scratch("hosts")) << "localhost\nno-such-host.invalid sp=2000\n";
   const Finished done =
-      startHost("--plan --hosts " + scratch("hosts") + " scenes/gallery/chess.ray", "plan.png")
+      startHost("--plan --voxels 4 --hosts " + scratch("hosts") + " scenes/gallery/chess.ray", "plan.png")
           ->wait(kPatience);
   EXPECT_EQ(done.status, 0) << done.errors;
   EXPECT_NE(done.output.find("voxel-trace 3"), std::string::npos) << done.output;
@@ -342,7 +342,8 @@ TEST_F(Pvm, SeveralHostsAndTheCrashOfOne) {
     ASSERT_EQ(started.status, 0) << started.errors << started.output;
     const auto render = [&](const std::string& picture) {
       return lab.begin("run " + lab.host(1) + " " + programDirectory() +
-                       "/rayshade-host --voxels 6 --shades 3 " + kLong + " -O " + scratch(picture));
+                       "/rayshade-host --schedule data --voxels 6 --shades 3 " + kLong + " -O " +
+                       scratch(picture));
     };
     if (crash == 0) {
       const Finished calm = render("calm.pfm")->wait(kPatience);

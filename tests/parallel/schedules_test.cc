@@ -26,7 +26,7 @@ HostOptions randomSchedule(std::uint64_t seed) {
   host.voxelsPerTask = from(1, 2);
   host.window = random.pick({5u, 300u, 4096u});
   host.cells = random.pick({1u, 8u, 60u, 400u});
-  host.tileSamples = random.pick({1u, 16u, 256u});
+  host.tilePixels = random.pick({1u, 16u, 256u});
   host.dynamicShading = random.oneIn(4);
   host.split = random.pick({Split::equal, Split::cost});
   DemandPolicy& policy = host.policy;

@@ -19,6 +19,9 @@ class NullLink : public Link {
   std::optional<LinkEvent> wait(double) override { return std::nullopt; }
   void watch(TaskId) override {}
   double now() const override { return time_ += 1e-5; }
+  unsigned cores() const override { return 1; }
+  void useThreads(unsigned) override {}
+  void run(Job job) override { job(0); }
 
   std::size_t packets = 0, bytes = 0;
 

@@ -30,7 +30,7 @@ Job jobOfText(std::string text) {
   return job;
 }
 
-Rendered renderSequentially(const Job& job, std::uint32_t voxels) {
+Rendered renderSequentially(const Job& job, std::uint32_t voxels, unsigned threads) {
   Scene scene;
   const SceneHead head = job.read(scene.model.store());
   scene.settings = head.settings;
@@ -41,7 +41,7 @@ Rendered renderSequentially(const Job& job, std::uint32_t voxels) {
   for (std::int32_t frame = first; frame < first + head.picture.frames; ++frame) {
     scene.prepare(exposureOf(head.picture, frame), voxels);
     Picture picture{area.width, area.height, {}};
-    const FrameResult done = renderFrame(scene, view, head.picture, frame, job.options.seed,
+    const FrameResult done = renderFrame(scene, {view, head.picture, job.options.seed}, frame, threads,
                                          [&](const std::vector<Color>& row) { appendRow(picture, row); });
     result.frames.push_back(std::move(picture));
     result.counts = result.counts + done.counts;

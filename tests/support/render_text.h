@@ -32,8 +32,8 @@ struct Rendered {
   std::uint64_t notFinite = 0;
   std::size_t objects = 0;
 };
-// `voxels`: into how many space is cut, without effect on the picture.
-Rendered renderSequentially(const Job& job, std::uint32_t voxels = 1);
+// `voxels`: into how many space is cut, without effect on the picture, as `threads`.
+Rendered renderSequentially(const Job& job, std::uint32_t voxels = 1, unsigned threads = 1);
 
 struct RenderedByTasks {
   std::vector<Picture> frames;

@@ -10,7 +10,7 @@ namespace {
 SampleId sampleAt(std::int32_t x) { return {x, 0, 0}; }
 
 TEST(InFlight, EachSampleComesHomeOnce) {
-  InFlight flying;
+  InFlight<SampleId> flying;
   for (std::int32_t x = 0; x < 4; ++x) {
     EXPECT_EQ(flying.next(), static_cast<RecordId>(x));
     flying.add(sampleAt(x));
@@ -29,7 +29,7 @@ TEST(InFlight, EachSampleComesHomeOnce) {
 }
 
 TEST(InFlight, WhatIsTakenBackComesInOrderAndItsNumbersAreNotUsedAgain) {
-  InFlight flying;
+  InFlight<SampleId> flying;
   for (std::int32_t x = 0; x < 5; ++x) flying.add(sampleAt(x));
   flying.take(1);
   EXPECT_EQ(flying.takeAll(), (std::vector<SampleId>{sampleAt(0), sampleAt(2), sampleAt(3), sampleAt(4)}));

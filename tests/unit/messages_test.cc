@@ -28,7 +28,7 @@ std::vector<Bytes> traffic() {
     host.wishes.shades = 2;
     host.wishes.pyramids = static_cast<std::uint32_t>(seed % 4) / 2 + 1;
     host.cells = 20;
-    host.tileSamples = 16;
+    host.tilePixels = 16;
     host.window = 20;
     host.policy.shadows = ShadowPolicy{static_cast<std::uint8_t>(seed % 3)};
     host.policy.secondariesTravel = seed % 2 == 0;

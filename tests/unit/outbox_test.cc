@@ -5,28 +5,23 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/null_link.h"
+
 #include <map>
 
 namespace rayshade {
 namespace {
 
-class RecordingLink final : public Link {
+class RecordingLink final : public NullLink {
  public:
   struct Packet {
     TaskId to;
     Bytes bytes;
   };
 
-  TaskId self() const override { return TaskId{1}; }
-  TaskId parent() const override { return kNobody; }
-  void connect(std::span<const TaskId>) override {}
   void send(TaskId to, std::span<const std::byte> packet) override {
     sent.push_back({to, Bytes(packet.begin(), packet.end())});
   }
-  std::optional<LinkEvent> poll() override { return std::nullopt; }
-  std::optional<LinkEvent> wait(double) override { return std::nullopt; }
-  void watch(TaskId) override {}
-  double now() const override { return 0; }
 
   std::vector<Packet> sent;
 };

@@ -8,6 +8,7 @@
 
 #include "rayshade/base/random.h"
 #include "tests/support/program.h"
+#include "tests/support/traced_tile.h"
 
 namespace rayshade {
 namespace {
@@ -47,17 +48,16 @@ TEST(Progress, ForeseesTheSamplesOfARefinedPicture) {
     spec.width = 90;
     spec.height = 80;
     spec.samplesPerSide = side;
-    Sampler sampler(spec, 1, 0, Sampler::Guessing::no);
+    Sampler sampler(spec, 1, 0, 8);
     std::vector<Completed> steps;
-    SampleId id;
     std::vector<Color> row;
     std::uint32_t count = 0;
     while (!sampler.finished()) {
-      while (sampler.next(id)) {
+      while (supplyNext(sampler, [&](const SampleId& id) {
         const double noise = id.x % 3 == 0 && id.x < 30 ? static_cast<double>(mixBits(++count) % 2) : 0.5;
-        sampler.supply(id, {noise, noise, noise});
+        return Color{noise, noise, noise};
+      }))
         steps.push_back(sampler.completed());
-      }
       while (sampler.takeRow(row)) {
       }
     }

@@ -4,8 +4,8 @@
 
 #include "rayshade/base/range.h"
 #include "rayshade/optics/refraction.h"
-#include "rayshade/sampling/sampler.h"
 #include "tests/support/parsed_text.h"
+#include "tests/support/traced_tile.h"
 
 namespace rayshade {
 namespace {
@@ -56,7 +56,7 @@ TEST(Sampler, CountsColoursThatAreNoNumbersAndMakesThemBlack) {
   spec.width = spec.height = 1;
   spec.samplesPerSide = 1;
   Sampler sampler(spec, 1, 0);
-  for (SampleId id; sampler.next(id);) sampler.supply(id, {std::nan(""), 1, HUGE_VAL});
+  supplyNext(sampler, [](const SampleId&) { return Color{std::nan(""), 1, HUGE_VAL}; });
   std::vector<Color> row;
   ASSERT_TRUE(sampler.takeRow(row));
   EXPECT_EQ(row.at(0), kBlack);

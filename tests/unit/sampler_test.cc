@@ -1,4 +1,4 @@
-// The sampler: positions and strata, and that its rows are those of the plain rule for any order of supply.
+// The sampler: its rows are those of the plain rule for any tiles and any order of supply.
 //
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rayshade/sampling/sampler.h"
@@ -9,9 +9,11 @@
 #include <cmath>
 #include <functional>
 #include <numeric>
+#include <variant>
 
 #include "rayshade/sampling/filter.h"
 #include "tests/support/seeded_random.h"
+#include "tests/support/traced_tile.h"
 
 namespace rayshade {
 namespace {
@@ -102,26 +104,63 @@ Reference reference(const PictureSpec& spec) {
   return result;
 }
 
-// Chooses which of `count` samples on the way comes next.
+// Chooses which of `count` things on the way comes next.
 using Order = std::function<std::size_t(std::size_t count)>;
 
-Rows run(const PictureSpec& spec, std::size_t window, const Order& order, Sampler::Guessing guessing,
-         SamplerCounts* counts = nullptr) {
-  Sampler sampler(spec, kSeed, kFrame, guessing);
+template <class T>
+T takeOne(std::vector<T>& flying, const Order& order) {
+  const auto chosen = flying.begin() + static_cast<std::ptrdiff_t>(order(flying.size()));
+  T one = std::move(*chosen);
+  flying.erase(chosen);
+  return one;
+}
+
+// What a tile's samples become, in whatever order their colours come.
+TileColors traceTile(const PictureSpec& spec, const Tile& tile, std::size_t window, const Order& order) {
+  TileSampler sampler(samplingRules(spec, kSeed, kFrame), tile);
   std::vector<SampleId> flying, batch(window);
-  std::vector<Color> row;
-  Rows rows;
   while (!sampler.finished()) {
     const std::size_t n = sampler.next(std::span(batch).first(window - flying.size()));
     flying.insert(flying.end(), batch.begin(), batch.begin() + static_cast<std::ptrdiff_t>(n));
     if (flying.empty()) {
+      ADD_FAILURE() << "stuck in the tile at " << tile.x << " " << tile.y;
+      break;
+    }
+    const SampleId id = takeOne(flying, order);
+    sampler.supply(id, colorOf(spec, id));
+  }
+  return sampler.colors();
+}
+
+Rows run(const PictureSpec& spec, std::size_t window, const Order& order, std::int32_t tileSide,
+         SamplerCounts* counts = nullptr) {
+  Sampler sampler(spec, kSeed, kFrame, tileSide);
+  std::vector<std::variant<Tile, SampleId>> flying;
+  std::vector<Color> row;
+  Rows rows;
+  while (!sampler.finished()) {
+    while (flying.size() < window) {
+      SampleId id;
+      if (sampler.nextSamples(std::span(&id, 1)) == 1) {
+        flying.push_back(id);
+      } else if (const auto tile = sampler.nextTile()) {
+        flying.push_back(*tile);
+      } else {
+        break;
+      }
+    }
+    if (flying.empty()) {
       ADD_FAILURE() << "stuck at row " << rows.size();
       break;
     }
-    const std::size_t chosen = order(flying.size());
-    const SampleId id = flying[chosen];
-    flying.erase(flying.begin() + static_cast<std::ptrdiff_t>(chosen));
-    sampler.supply(id, colorOf(spec, id));
+    const auto next = takeOne(flying, order);
+    if (const Tile* tile = std::get_if<Tile>(&next)) {
+      const TileColors colors = traceTile(spec, *tile, window, order);
+      EXPECT_TRUE(fit(colors, *tile));
+      sampler.supply(*tile, colors);
+    } else {
+      sampler.supply(std::get<SampleId>(next), colorOf(spec, std::get<SampleId>(next)));
+    }
     while (sampler.takeRow(row)) rows.push_back(row);
   }
   if (counts) *counts = sampler.counts();
@@ -130,93 +169,6 @@ Rows run(const PictureSpec& spec, std::size_t window, const Order& order, Sample
 
 std::size_t oldest(std::size_t) { return 0; }
 std::size_t newest(std::size_t count) { return count - 1; }
-
-TEST(SampleNumbers, AreAPermutationOfTheStrata) {
-  for (std::int32_t side = 1; side <= 8; ++side) {
-    std::vector<std::int32_t> numbers, expected(static_cast<std::size_t>(side * side));
-    for (std::int32_t cell = 0; cell < side * side; ++cell) numbers.push_back(sampleNumber(side, cell));
-    std::sort(numbers.begin(), numbers.end());
-    std::iota(expected.begin(), expected.end(), side >= 6 ? 1 : 0);
-    EXPECT_EQ(numbers, expected) << side;
-  }
-}
-
-TEST(SampleNumbers, OfTheLargeSidesFormMagicSquares) {
-  for (std::int32_t side : {6, 7, 8}) {
-    const std::int32_t magic = side * (side * side + 1) / 2;
-    for (std::int32_t i = 0; i < side; ++i) {
-      std::int32_t row = 0, column = 0;
-      for (std::int32_t j = 0; j < side; ++j) {
-        row += sampleNumber(side, j + i * side);
-        column += sampleNumber(side, i + j * side);
-      }
-      EXPECT_EQ(row, magic) << side << " row " << i;
-      EXPECT_EQ(column, magic) << side << " column " << i;
-    }
-  }
-}
-
-TEST(SamplePosition, WithoutJitterIsTheUpperLeftCornerOfTheCell) {
-  PictureSpec spec = specOf(64, 64, 4);
-  spec.jitter = false;
-  spec.filter.width = 2;
-  const SamplePosition at = samplePosition(spec, kSeed, 0, {10, 20, 6});  // column 2, row 1
-  EXPECT_EQ(at.u, 10.0);
-  EXPECT_EQ(at.v, 19.5);
-  EXPECT_EQ(at.number, 14);
-}
-
-TEST(SamplePosition, WithJitterFillsTheCell) {
-  PictureSpec spec = specOf(64, 64, 2);
-  double low = 1, high = 0, mean = 0;
-  for (std::int32_t x = 0; x < 1000; ++x) {
-    const SamplePosition at = samplePosition(spec, kSeed, 0, {x, 5, 1});
-    const double inCell = at.u - x;  // 0 .. 0.5
-    low = std::min(low, inCell);
-    high = std::max(high, inCell);
-    mean += inCell / 1000;
-    EXPECT_GE(at.v, 4.5);
-    EXPECT_LT(at.v, 5.0);
-  }
-  EXPECT_GE(low, 0);
-  EXPECT_LT(low, 0.01);
-  EXPECT_LT(high, 0.5);
-  EXPECT_GT(high, 0.49);
-  EXPECT_NEAR(mean, 0.25, 0.02);
-}
-
-TEST(SamplePosition, TimeGoesByFrameAndStratum) {
-  PictureSpec spec = specOf(64, 64, 2);
-  spec.startTime = 10;
-  spec.frameLength = 2;
-  EXPECT_EQ(samplePosition(spec, kSeed, 3, {0, 0, 2}).time, 16);  // no shutter: the start of the frame
-  spec.shutter = 1;
-  const double time = samplePosition(spec, kSeed, 3, {0, 0, 2}).time;  // cell 2 has number 3
-  EXPECT_GE(time, 16.75);
-  EXPECT_LT(time, 17);
-  spec.jitter = false;
-  EXPECT_EQ(samplePosition(spec, kSeed, 3, {0, 0, 2}).time, 16.75);
-}
-
-TEST(SamplePosition, LensPointLiesInTheStratumOfTheNumber) {
-  const PictureSpec spec = specOf(64, 64, 3);
-  for (std::int32_t cell = 0; cell < 9; ++cell) {
-    const SamplePosition at = samplePosition(spec, kSeed, 0, {1, 2, cell});
-    const LensPosition lens = lensPosition(at);
-    EXPECT_EQ(std::floor((lens.x + 1) * 1.5), at.number % 3);
-    EXPECT_EQ(std::floor((lens.y + 1) * 1.5), at.number / 3);
-  }
-}
-
-TEST(SamplePosition, DiffersBySeedFramePixelAndCell) {
-  const PictureSpec spec = specOf(64, 64, 3);
-  const auto key = samplePosition(spec, 1, 1, {1, 2, 0}).key;
-  EXPECT_EQ(samplePosition(spec, 1, 1, {1, 2, 0}).key, key);
-  EXPECT_NE(samplePosition(spec, 2, 1, {1, 2, 0}).key, key);
-  EXPECT_NE(samplePosition(spec, 1, 2, {1, 2, 0}).key, key);
-  EXPECT_NE(samplePosition(spec, 1, 1, {2, 1, 0}).key, key);
-  EXPECT_NE(samplePosition(spec, 1, 1, {1, 2, 1}).key, key);
-}
 
 TEST(Contrast, IsRelativeToTheSumOfTheExtremes) {
   const Color threshold{0.2, 0.2, 0.2};
@@ -242,10 +194,11 @@ TEST(Sampler, GivesTheRowsOfThePlainRuleForAnyOrder) {
     const Reference expected = reference(spec);
     ASSERT_GT(expected.refined, 50u);  // or else the test tests nothing
     ASSERT_LT(expected.refined, 900u);
-    for (auto guessing : {Sampler::Guessing::no, Sampler::Guessing::yes})
-      for (std::size_t window : {1u, 2u, 17u, 300u, 3000u})
+    for (std::int32_t tileSide : {1, 5, 8, 32, 100})
+      for (std::size_t window : {1u, 2u, 17u, 300u})
         for (const Order& order : {Order(oldest), Order(newest), anyOne})
-          EXPECT_TRUE(run(spec, window, order, guessing) == expected.rows) << side << " window " << window;
+          EXPECT_TRUE(run(spec, window, order, tileSide) == expected.rows)
+              << side << " tiles " << tileSide << " window " << window;
   }
 }
 
@@ -266,8 +219,9 @@ TEST(Sampler, GivesTheRowsOfThePlainRuleForAnySize) {
                                  {9, 17}}) {
       PictureSpec spec = specOf(40, 40, side);
       spec.window = {4, 4 + width - 1, 6, 6 + height - 1};
-      EXPECT_TRUE(run(spec, 50, anyOne, Sampler::Guessing::yes) == reference(spec).rows)
-          << width << " x " << height << " side " << side;
+      for (std::int32_t tileSide : {1, 4, 32})
+        EXPECT_TRUE(run(spec, 50, anyOne, tileSide) == reference(spec).rows)
+            << width << " x " << height << " side " << side << " tiles " << tileSide;
     }
 }
 
@@ -275,15 +229,14 @@ TEST(Sampler, LineBelowThePictureRefinesTheLastLineButOne) {
   PictureSpec spec = specOf(5, 4, 2);
   auto rowsWith = [&](double below) {
     Sampler sampler(spec, kSeed, kFrame);
-    SampleId id;
+    supplyNext(sampler, [&](const SampleId& id) {
+      const double light = id.y == 4 ? below : id.y == 2 ? 1 + 0.1 * id.cell : 1.1;
+      return Color{light, light, light};
+    });
     Rows rows;
     std::vector<Color> row;
-    while (!sampler.finished()) {
-      EXPECT_TRUE(sampler.next(id));
-      const double light = id.y == 4 ? below : id.y == 2 ? 1 + 0.1 * id.cell : 1.1;
-      sampler.supply(id, {light, light, light});
-      while (sampler.takeRow(row)) rows.push_back(row);
-    }
+    while (sampler.takeRow(row)) rows.push_back(row);
+    EXPECT_TRUE(sampler.finished());
     return rows;
   };
   const double mean = 1 + 0.1 * 1.5;  // of the four cells
@@ -296,40 +249,43 @@ TEST(Sampler, CountsWhatTheRuleAskedForWhateverRanAhead) {
   const std::uint64_t refined = reference(spec).refined, border = 2 * 37 + 2 * 27, inside = 35 * 27;
   const std::uint64_t samples = 9 * border + inside + 35 + 8 * refined;  // 35: the line below
   SamplerCounts counts;
-  run(spec, 1, oldest, Sampler::Guessing::no, &counts);
+  run(spec, 1, oldest, 100, &counts);  // one tile sees all that the picture's sweep sees
   EXPECT_EQ(counts.needed, samples);
-  EXPECT_LE(counts.given, samples);  // the end of the line below may not be waited for
-  EXPECT_GE(counts.given, samples - 35);
+  EXPECT_EQ(counts.given, samples);
   EXPECT_EQ(counts.supersampled, border + refined);
-  run(spec, 3000, newest, Sampler::Guessing::yes, &counts);
+  run(spec, 300, newest, 1, &counts);  // no tile refines anything
+  EXPECT_EQ(counts.given, samples);
+  run(spec, 300, newest, 8, &counts);
   EXPECT_EQ(counts.needed, samples);
   EXPECT_GE(counts.given, samples);
-  EXPECT_LT(counts.given, samples + samples / 2);
+  EXPECT_LT(counts.given, samples + samples / 100);
 }
 
 TEST(Sampler, GivesEachSampleOnce) {
   const PictureSpec spec = specOf(20, 20, 3);
-  Sampler sampler(spec, kSeed, kFrame);
-  std::vector<std::uint8_t> seen(20 * 21 * 9);
-  std::vector<Color> row;
-  SampleId id;
-  while (!sampler.finished()) {
-    ASSERT_TRUE(sampler.next(id));
-    EXPECT_EQ(seen[static_cast<std::size_t>((id.y * 20 + id.x) * 9 + id.cell)]++, 0);
-    sampler.supply(id, colorOf(spec, id));
-    while (sampler.takeRow(row)) continue;
+  for (std::int32_t tileSide : {1, 7, 32}) {
+    Sampler sampler(spec, kSeed, kFrame, tileSide);
+    std::vector<std::uint8_t> seen(20 * 21 * 9);
+    const auto see = [&](const SampleId& id) {
+      EXPECT_EQ(seen[static_cast<std::size_t>((id.y * 20 + id.x) * 9 + id.cell)]++, 0);
+      return colorOf(spec, id);
+    };
+    std::vector<Color> row;
+    while (!sampler.finished()) {
+      ASSERT_TRUE(supplyNext(sampler, see));
+      while (sampler.takeRow(row)) continue;
+    }
+    EXPECT_FALSE(supplyNext(sampler, see));
+    EXPECT_FALSE(sampler.takeRow(row));
   }
-  EXPECT_FALSE(sampler.next(id));
-  EXPECT_FALSE(sampler.takeRow(row));
 }
 
-TEST(Sampler, IgnoresColoursThatItDidNotAskFor) {
+TEST(Sampler, IgnoresColoursThatDoNotBelongToIt) {
   const PictureSpec spec = specOf(12, 12, 2);
-  Sampler sampler(spec, kSeed, kFrame);
+  Sampler sampler(spec, kSeed, kFrame, 4);
   const Color wrong{1e9, 1e9, 1e9};
   std::vector<Color> row;
   Rows rows;
-  SampleId id;
   while (!sampler.finished()) {
     for (const SampleId& other : {SampleId{-1, 0, 0},
                                   {0, -1, 0},
@@ -337,45 +293,49 @@ TEST(Sampler, IgnoresColoursThatItDidNotAskFor) {
                                   {0, 13, 0},
                                   {0, 0, 4},
                                   {0, 0, -1},
-                                  {11, 11, 3},
                                   {2147483647, -2147483647 - 1, 2147483647}})
-      if (other.x != 11 || rows.size() < 2) sampler.supply(other, wrong);
-    ASSERT_TRUE(sampler.next(id));
-    sampler.supply(id, colorOf(spec, id));
-    sampler.supply(id, wrong);
+      sampler.supply(other, wrong);
+    SampleId last;
+    ASSERT_TRUE(supplyNext(sampler, [&](const SampleId& id) { return colorOf(spec, last = id); }));
+    sampler.supply(last, wrong);  // once more
     while (sampler.takeRow(row)) rows.push_back(row);
   }
   EXPECT_TRUE(rows == reference(spec).rows);
 }
 
+TEST(Sampler, RefusesColoursThatDoNotFitTheirTile) {
+  const Tile tile{0, 0, 4, 2};
+  const std::vector<Color> eight(8), seven(7), two(2);
+  EXPECT_TRUE(fit({eight, {1, 7}, two, 8, 0}, tile));
+  for (const TileColors& bad : {TileColors{seven, {}, {}, 7, 0},
+                                {eight, {1}, two, 8, 0},
+                                {eight, {1, 8}, two, 8, 0},
+                                {eight, {7, 1}, two, 8, 0},
+                                {eight, {1, 1}, two, 8, 0}})
+    EXPECT_FALSE(fit(bad, tile));
+}
+
 TEST(Sampler, HoldsBackRowsUntilFinishedOnesAreTaken) {
   PictureSpec spec = specOf(1000, 60000, 1);
   Sampler sampler(spec, kSeed, kFrame);
-  std::vector<SampleId> batch(1000);
-  std::size_t given = 0, n = 0;
-  while ((n = sampler.next(batch)) != 0) {
-    given += n;
-    for (const SampleId& id : std::span(batch).first(n)) sampler.supply(id, kWhite);
-    ASSERT_LT(given, 100000u);
-  }
-  EXPECT_GE(given, 16000u);
+  std::size_t given = 0;
+  while (supplyNext(sampler, [&](const SampleId&) {
+    ++given;
+    return kWhite;
+  }))
+    ASSERT_LT(given, 300000u);
+  EXPECT_GE(given, 64000u);
   std::vector<Color> row;
   ASSERT_TRUE(sampler.takeRow(row));
   EXPECT_TRUE(row == std::vector<Color>(1000, kWhite));
   while (sampler.takeRow(row)) continue;
-  EXPECT_GT(sampler.next(batch), 0u);
+  EXPECT_TRUE(sampler.nextTile());
 }
 
-TEST(Sampler, HasManySamplesToGiveBeforeAnyColourIsKnown) {
-  Sampler sampler(specOf(512, 512, 3), kSeed, kFrame);
-  std::vector<SampleId> batch(10000);
-  EXPECT_EQ(sampler.next(batch), batch.size());
-}
-
-TEST(Sampler, GivesNeighboursTogether) {
-  Sampler sampler(specOf(512, 512, 1), kSeed, kFrame);
+TEST(TileSampler, GivesNeighboursTogether) {
+  TileSampler sampler(samplingRules(specOf(512, 512, 1), kSeed, kFrame), {0, 0, 64, 64});
   std::vector<SampleId> block(64);
-  for (int i = 0; i < 100; ++i) {
+  for (int i = 0; i < 64; ++i) {
     ASSERT_EQ(sampler.next(block), 64u);
     const auto [left, right] = std::ranges::minmax(block, {}, &SampleId::x);
     const auto [top, bottom] = std::ranges::minmax(block, {}, &SampleId::y);
@@ -389,8 +349,7 @@ TEST(Sampler, EvenLightStaysEven) {
     PictureSpec spec = specOf(5, 5, side);
     spec.filter = {side % 2 == 0, 1.8};
     Sampler sampler(spec, kSeed, kFrame);
-    SampleId id;
-    while (sampler.next(id)) sampler.supply(id, kWhite);
+    supplyNext(sampler, [](const SampleId&) { return kWhite; });
     std::vector<Color> row;
     while (sampler.takeRow(row))
       for (const Color& c : row) EXPECT_EQ(static_cast<float>(c.r), 1.0f);

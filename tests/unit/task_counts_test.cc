@@ -58,7 +58,7 @@ TEST(SceneWork, NoMoreVoxelTasksThanObjects) {
 TEST(SceneWork, NoMorePyramidTasksThanPyramids) {
   HostOptions options;
   options.wishes.pyramids = 9;
-  options.tileSamples = 256;  // 1200 rays
+  options.tilePixels = 256;  // 1200 rays
   EXPECT_EQ(neededTasks(needsOfText(kPicture + kThree), options, 1).wishes.pyramids, 5u);
   options.wishes.clusters = 7;  // every cluster has somebody to work for
   EXPECT_EQ(neededTasks(needsOfText(kPicture + kThree), options, 1).wishes.pyramids, 7u);

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pvm/trace/tile_jobs.h"
+
+namespace rayshade {
+
+void TileJobs::stop() {
+  if (!active()) return;
+  context_.link.useThreads(0);
+  before_ = counts();
+  tracers_.clear();
+  done_.clear();
+  left_ = 0;
+}
+
+void TileJobs::begin(const SamplingRules& rules, unsigned threads) {
+  rules_ = rules;
+  context_.link.useThreads(threads);
+  for (unsigned i = 0; i < threads; ++i)
+    tracers_.push_back(std::make_unique<SampleTracer>(space_, at_.settings, at_.request, at_.exposure.frame));
+}
+
+void TileJobs::add(Done&& job) {
+  ++left_;
+  context_.link.run([this, job = std::move(job)](unsigned worker) mutable {
+    tracers_[worker]->trace(*rules_, job.work);
+    const std::lock_guard lock(mutex_);
+    done_.push_back(std::move(job));
+  });
+}
+
+void TileJobs::send(TaskId host) {
+  std::vector<Done> done;
+  {
+    const std::lock_guard lock(mutex_);
+    done.swap(done_);
+  }
+  left_ -= done.size();
+  for (Done& job : done) {
+    if (job.work.samples.empty()) {
+      ++pyramids_;
+      pyramidRays_ += job.work.tileColors.samples;
+      context_.outbox.post(host,
+                           TileDone{static_cast<std::uint32_t>(job.number), std::move(job.work.tileColors)});
+    } else {
+      context_.outbox.post(host, SampleColors{job.number, std::move(job.work.colors)});
+    }
+    context_.outbox.post(host, PyramidWanted{});
+  }
+}
+
+TraceCounts TileJobs::counts() const {
+  TraceCounts sum = before_;
+  for (const auto& tracer : tracers_) sum = sum + tracer->counts;
+  return sum;
+}
+
+}  // namespace rayshade
