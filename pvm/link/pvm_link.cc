@@ -69,14 +69,15 @@ PvmLink::~PvmLink() {
 
 bool PvmLink::connected(TaskId task) const {
   const Peer* peer = peers_.find(task);
-  return peer != nullptr && peer->direct;
+  return peer != nullptr && peer->direct();
 }
 
 void PvmLink::send(TaskId to, std::span<const std::byte> packet) {
   if (packet.size() > static_cast<std::size_t>(kLargestPacket))
     throw std::length_error("packet of more than 1 GiB");
-  if (!routes_.waitForRoom(to)) return;
-  std::uint32_t place = peers_[to].sent++;
+  Peer& peer = peers_[to];
+  if (!routes_.waitForRoom(to, peer)) return;
+  std::uint32_t place = peer.sent++;
   daemon_.check(pvm_initsend(PvmDataRaw), "initsend");
   daemon_.check(pvm_pkuint(&place, 1, 1), "pkuint");
   // pvm_pkbyte reads only, though its type does not say so

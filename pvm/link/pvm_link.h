@@ -28,7 +28,6 @@ class PvmLink final : public Machine {
 
   TaskId self() const override { return self_; }
   TaskId parent() const override { return parent_; }
-  void connect(std::span<const TaskId> peers) override { routes_.connect(peers); }
   void send(TaskId to, std::span<const std::byte> packet) override;
   std::optional<LinkEvent> poll() override;
   std::optional<LinkEvent> wait(double seconds) override;

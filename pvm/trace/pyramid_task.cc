@@ -30,8 +30,6 @@ void PyramidTask::on(TaskId from, Configure message) {
   const std::uint32_t cluster = message.number % message.directory.clusters;
   const auto finder = static_cast<std::uint32_t>(message.directory.voxelTasks.size()) + message.number;
   unit_.begin(from, std::move(message), cluster, finder);
-  context_.link.connect(unit_.at.directory.voxelTasks);
-  context_.link.connect(unit_.at.directory.shadeTasks);
   context_.outbox.post(from, Ready{context_.epoch, arithmeticFingerprint(), 0, 0, 0});
   for (int i = 0; i < kAhead; ++i) context_.outbox.post(from, PyramidWanted{});
 }

@@ -33,9 +33,6 @@ void VoxelTask::on(TaskId from, Configure message) {
   host_ = from;
   const std::uint32_t number = message.number, perCluster = directory.tasksPerCluster();
   unit_.begin(from, std::move(message), number / perCluster, number);
-  context_.link.connect(unit_.at.directory.voxelTasks);
-  context_.link.connect(unit_.at.directory.shadeTasks);
-  context_.link.connect(unit_.at.directory.pyramidTasks);
   share_.prepare(unit_.at.exposure, unit_.at.tree, unit_.at.directory.voxels, number % perCluster);
   context_.outbox.post(from, Ready{context_.epoch, arithmeticFingerprint(), share_.objects(), share_.owned(),
                                    share_.leftOut()});

@@ -19,7 +19,6 @@ class RecordingLink final : public Link {
 
   TaskId self() const override { return TaskId{1}; }
   TaskId parent() const override { return kNobody; }
-  void connect(std::span<const TaskId>) override {}
   void send(TaskId to, std::span<const std::byte> packet) override {
     sent.push_back({to, Bytes(packet.begin(), packet.end())});
   }
