@@ -17,6 +17,7 @@ constexpr int kFragmentBytes = 65536;  // a packet in one write; PVM's own 4080 
 constexpr double kLastOutputSeconds = 0.2;  // for the last lines of tasks that were ended
 constexpr double kFarewellSeconds = 1;      // for the tasks of a daemon that has gone: it has ended them, too
 constexpr int kLargestPacket = 1 << 30;
+constexpr double kLongestSleep = 1000;
 
 TaskId enrol() {
   if (lookForMachine() != MachineState::alive)  // libpvm would wait 12 s for a daemon that died
@@ -75,6 +76,10 @@ bool PvmLink::connected(TaskId task) const {
 void PvmLink::send(TaskId to, std::span<const std::byte> packet) {
   if (packet.size() > static_cast<std::size_t>(kLargestPacket))
     throw std::length_error("packet of more than 1 GiB");
+  if (to == self_) {  // the daemon would only bring it back
+    events_.push_back({LinkEvent::Kind::packet, self_, {}, Bytes(packet.begin(), packet.end())});
+    return;
+  }
   Peer& peer = peers_[to];
   if (!routes_.waitForRoom(to, peer)) return;
   std::uint32_t place = peer.sent++;
@@ -86,30 +91,29 @@ void PvmLink::send(TaskId to, std::span<const std::byte> packet) {
   daemon_.check(pvm_send(number(to), number(Tag::packet)), "send");
 }
 
-std::optional<LinkEvent> PvmLink::poll() {
-  while (events_.empty()) {
-    const int buffer = daemon_.check(pvm_nrecv(-1, -1), "nrecv");
-    if (buffer <= 0) break;
-    if (!take(buffer)) ++refused_;
+std::optional<LinkEvent> PvmLink::wait(double seconds) {
+  const double end = now() + seconds;
+  double left = std::max(seconds, 0.0);
+  for (; events_.empty(); left = std::max(end - now(), 0.0)) {
+    const int buffer = receive(peers_.anyEnding() ? std::min(left, kSettleSeconds / 10) : left);
+    if (buffer > 0 && !take(buffer)) ++refused_;
+    if (buffer > 0) continue;
+    if (peers_.anyEnding()) peers_.reapExpired();
+    if (!(left > 0)) break;
   }
-  if (peers_.anyEnding() && events_.empty()) peers_.reapExpired();
   if (events_.empty()) return std::nullopt;
   LinkEvent event = std::move(events_.front());
   events_.pop_front();
   return event;
 }
 
-std::optional<LinkEvent> PvmLink::wait(double seconds) {
-  const double end = now() + seconds;
-  for (;;) {
-    if (auto event = poll()) return event;  // first: a message may lie in libpvm with all sockets quiet
-    double left = end - now();
-    if (!(left > 0)) return std::nullopt;
-    if (peers_.anyEnding()) left = std::min(left, kSettleSeconds / 10);
-    std::vector<pollfd> sockets;
-    daemon_.addSockets(sockets);
-    ::poll(sockets.data(), sockets.size(), static_cast<int>(std::min(std::ceil(left * 1000), 1e9)));
-  }
+// libpvm looks at its sockets once, or sleeps in the same call: nothing here looks at them before.
+int PvmLink::receive(double seconds) {
+  if (!(seconds > 0)) return daemon_.check(pvm_nrecv(-1, -1), "nrecv");
+  const double whole = std::floor(std::min(seconds, kLongestSleep));
+  const double micros = std::min((seconds - whole) * 1e6, 999999.0);
+  timeval left{static_cast<time_t>(whole), static_cast<suseconds_t>(micros)};
+  return daemon_.check(pvm_trecv(-1, -1, &left), "trecv");
 }
 
 void PvmLink::watch(TaskId task) {

@@ -16,7 +16,6 @@ namespace rayshade {
 
 class PyramidTask {
  public:
-  static constexpr double kHoldSeconds = 0;  // pyramids are waited for
   using Accepted = TypeList<Configure, Finish, Ping, Weights, PrimaryRays, CellItems>;
   static constexpr int kAhead =
       4;  // pyramids asked for at a time: some are traced while others wait for cells
