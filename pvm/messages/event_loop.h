@@ -13,7 +13,7 @@
 namespace rayshade {
 
 inline constexpr double kWorkSlice = 0.004;  // seconds of work between two looks at the link
-inline constexpr double kHoldSeconds = 0.0003;
+inline constexpr double kHoldSeconds = 0.0005;
 inline constexpr double kMostHeldSeconds = 0.004;
 inline constexpr double kPatience = 1.0;  // seconds of sleep when nothing comes
 
