@@ -174,11 +174,12 @@ bool HostTask::configure() {
   ++summary_.epochs;
   outbox_.beginEpoch(epoch());
   summary_.reissued += issuing_.recall();
+  std::vector<TaskId> tasks;
   for (Slave& slave : roster_.slaves()) {
     slave.ready = false;
-    configuration_.number = slave.placement.index;
-    outbox_.post(slave.task, configuration_);
+    tasks.push_back(slave.task);
   }
+  outbox_.postToAll(tasks, configuration_);
   outbox_.flush();
   while (roster_.complete() && !std::ranges::all_of(roster_.slaves(), &Slave::ready)) takeEvents(1);
   return roster_.complete();

@@ -65,7 +65,9 @@ PvmLink::~PvmLink() {
   }
   output_.endAll();
   if (!daemon_.lost()) pvm_exit();
-  removeRouteSockets(daemon_.lost() && parent_ == kNobody ? kFarewellSeconds : 0);
+  // libpvm removes its own in order; those of tasks that were killed are the first task's to remove.
+  if (daemon_.lost() || parent_ == kNobody)
+    removeRouteSockets(daemon_.lost() && parent_ == kNobody ? kFarewellSeconds : 0);
 }
 
 bool PvmLink::connected(TaskId task) const {

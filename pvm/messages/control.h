@@ -60,7 +60,7 @@ struct ItemsTaken {
   static constexpr std::uint8_t tag = 2;
 };
 
-// Host to all tasks: a new epoch; drop all work, keep the items, answer Ready.
+// Host to all tasks, the same bytes to each: a new epoch; drop all work, keep the items, answer Ready.
 struct Configure {
   static constexpr bool isFact = true;
   static constexpr std::uint8_t tag = 3;
@@ -68,7 +68,6 @@ struct Configure {
   SceneSettings settings;
   BinTree tree;
   Directory directory;
-  std::uint32_t number = 0;  // of the receiver among the tasks of its role
   Exposure exposure;
   DemandPolicy policy;
   FrameRequest request;
@@ -180,7 +179,7 @@ void serialize(Archive& archive, Exposure& e) {
 
 template <class Archive>
 void serialize(Archive& archive, Configure& m) {
-  archive(m.epoch, m.settings, m.tree, m.directory, m.number, m.exposure, m.policy, m.request, m.cellBytes,
+  archive(m.epoch, m.settings, m.tree, m.directory, m.exposure, m.policy, m.request, m.cellBytes,
           m.cellBounds, m.loadEvery);
 }
 

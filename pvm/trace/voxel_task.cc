@@ -24,14 +24,15 @@ void VoxelTask::on(TaskId from, Items message) {
 
 void VoxelTask::on(TaskId from, Configure message) {
   const Directory& directory = message.directory;
-  if (!isComplete(message) || message.number >= directory.voxelTasks.size()) {
+  const std::optional<std::uint32_t> place = placeAmong(directory.voxelTasks, context_.link.self());
+  if (!isComplete(message) || !place) {
     ++context_.outbox.traffic.refused;
     return;
   }
   context_.beginEpoch(from, message);
   dropWork();
   host_ = from;
-  const std::uint32_t number = message.number, perCluster = directory.tasksPerCluster();
+  const std::uint32_t number = *place, perCluster = directory.tasksPerCluster();
   unit_.begin(from, std::move(message), number / perCluster, number);
   share_.prepare(unit_.at.exposure, unit_.at.tree, unit_.at.directory.voxels, number % perCluster);
   context_.outbox.post(from, Ready{context_.epoch, arithmeticFingerprint(), share_.objects(), share_.owned(),
