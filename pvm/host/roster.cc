@@ -84,9 +84,8 @@ void Roster::checkSuccession(const Slave& slave) {
     throw HostError("tasks keep dying: given up after " + std::to_string(options_.mostSuccessions) +
                     " successors; the last to die was " + lastDeath_);
   if (slave.earlyDeaths >= options_.mostEarlyDeaths)
-    throw HostError("given up after " + std::to_string(slave.earlyDeaths) +
-                    " deaths before it was ready: " + lastDeath_ +
-                    "; with more tasks (--voxels) or hosts each holds less of the scene");
+    throw HostError("given up after " + std::to_string(slave.earlyDeaths) + " deaths before it was ready: " +
+                    lastDeath_ + "; with more tasks (--voxels) or hosts each holds less of the scene");
 }
 
 Spawned Roster::spawn(Slave& slave, const std::vector<HostInfo>& hosts) {

@@ -49,16 +49,16 @@ class PacketOrder {
 };
 
 struct Peer {
-  bool child = false;       // spawned here
-  bool watched = false;     // the owner of this link wants to know of its death
-  bool exitWanted = false;  // PVM was asked to tell of its exit
-  bool exited = false;      // PVM told of it
+  bool child = false;        // spawned here
+  bool watched = false;      // the owner of this link wants to know of its death
+  bool exitWanted = false;   // PVM was asked to tell of its exit
+  bool exited = false;       // PVM told of it
   bool routeOpened = false;  // libpvm was told to open a direct route to it
-  int route = -1;           // the socket of the direct route that stands, which is libpvm's; -1: none
-  bool dead = false;        // nothing more is taken from it
-  double ending = 0;        // when the first sign of its death came; 0: none
-  std::uint32_t sent = 0;   // packets
-  PacketOrder packets;      // from it
+  int route = -1;            // the socket of the direct route that stands, which is libpvm's; -1: none
+  bool dead = false;         // nothing more is taken from it
+  double ending = 0;         // when the first sign of its death came; 0: none
+  std::uint32_t sent = 0;    // packets
+  PacketOrder packets;       // from it
 
   bool direct() const { return route >= 0; }
   bool leaves() const { return dead || ending != 0; }  // nothing is sent to it
@@ -84,7 +84,7 @@ class Peers {
   void bury(TaskId task, Peer& peer);
 
   std::unordered_map<TaskId, Peer> peers_;  // node-based: a Peer stays where it is
-  int ending_ = 0;  // show a sign of death and are not buried
+  int ending_ = 0;                          // show a sign of death and are not buried
   Buried buried_;
 };
 

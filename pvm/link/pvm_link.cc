@@ -121,10 +121,12 @@ int PvmLink::receive(double seconds) {
 void PvmLink::watch(TaskId task) {
   Peer& peer = peers_[task];
   if (std::exchange(peer.watched, true)) return;
-  if (peer.dead)
+  if (peer.dead) {
     events_.push_back({LinkEvent::Kind::taskExit, task, {}, {}});
-  else
-    askForExit(task);
+    return;
+  }
+  askForExit(task);
+  routes_.watch(task);
 }
 
 void PvmLink::askForExit(TaskId task) {

@@ -41,7 +41,7 @@ bool Routes::waitForRoom(TaskId task, const Peer& peer) {
   for (;;) {
     if (peer.leaves()) return false;
     if (!peer.direct()) {
-      if (peer.sent == kPacketsByDaemon) ask(task);
+      if (peer.sent == (farAway(task) ? 0 : kPacketsByDaemon)) ask(task);
       return true;
     }
     pollfd route{peer.route, POLLOUT | POLLRDHUP, 0};
@@ -57,6 +57,10 @@ bool Routes::waitForRoom(TaskId task, const Peer& peer) {
     // pvm_nrecv takes in what has come, so two tasks that send to each other do not wait for ever.
     takeNotices();
   }
+}
+
+void Routes::watch(TaskId task) {
+  if (farAway(task)) ask(task);
 }
 
 void Routes::ask(TaskId peer) {

@@ -1,8 +1,9 @@
 // Direct routes: sockets between two tasks, past the daemons.
 //
 // A route costs both tasks a descriptor, some work when it is opened, and a place in each of libpvm's select()s; so it is
-// opened when it is known to pay: when a task has sent a few packets to a peer by way of the daemons.  A task that has no
-// descriptor left for another route goes on with the daemons.
+// opened when it is known to pay: when a task has sent a few packets to a peer by way of the daemons.  Between two machines it
+// is opened at the first packet, and to a task that is watched at once: only a route tells soon that a machine is gone.  A
+// task that has no descriptor left for another route goes on with the daemons.
 //
 // Opening one blocks inside libpvm until the peer enters libpvm too - minutes, if the peer's machine is gone.  So it is
 // agreed upon by way of the daemons: the task with the larger id says "come in", by itself or because the other has knocked,
@@ -21,11 +22,13 @@ namespace rayshade {
 
 class Routes {
  public:
-  // Packets to one peer that go by way of the daemons before a route is asked for.
+  // Packets to a peer on the same machine that go by way of the daemon before a route is asked for.
   static constexpr std::uint32_t kPacketsByDaemon = 4;
 
   Routes(Daemon& daemon, Peers& peers, TaskId self);
 
+  // The end of the peer's machine is to be told soon.
+  void watch(TaskId task);
   // Another packet is to be sent: waits until the peer can take it.  False: it leaves, nothing is to be sent.
   bool waitForRoom(TaskId task, const Peer& peer);
   // The messages by which routes are agreed upon, and libpvm's notice of one.  False: it is none of those.
@@ -35,6 +38,7 @@ class Routes {
  private:
   void ask(TaskId peer);
   void open(TaskId peer);
+  bool farAway(TaskId peer) const { return daemonOf(peer) != daemonOf(self_); }
   bool anyLeft() const { return standing_ < most_; }
   void takeNotices();
 

@@ -18,8 +18,7 @@ double distanceTo(const Bounds& box, Vec3 p) {
 }  // namespace
 
 void PyramidTask::on(TaskId from, Configure message) {
-  const std::optional<std::uint32_t> place =
-      placeAmong(message.directory.pyramidTasks, context_.link.self());
+  const std::optional<std::uint32_t> place = placeAmong(message.directory.pyramidTasks, context_.link.self());
   if (!isComplete(message) || !place) {
     ++context_.outbox.traffic.refused;
     return;

@@ -4,6 +4,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/resource.h>
 
 #include <chrono>
 #include <cstdio>
@@ -263,6 +264,31 @@ TEST_F(LinkOverPvm, ARouteIsOpenedWhenAPairHasExchangedAFewPackets) {
   EXPECT_TRUE(connected(task));
   ASSERT_TRUE(answers(other));
   EXPECT_FALSE(link->connected(other));
+}
+
+// Any number of peers can be talked to, whatever number of files may be open.
+TEST_F(LinkOverPvm, WithoutDescriptorsForRoutesPacketsGoByTheDaemons) {
+  rlimit before{};
+  getrlimit(RLIMIT_NOFILE, &before);
+  rlimit few = before;
+  few.rlim_cur = 24;
+  setrlimit(RLIMIT_NOFILE, &few);
+  link.emplace(workerCommand);
+  const TaskId task = worker();
+  for (std::uint32_t i = 0; i < 5 * Routes::kPacketsByDaemon; ++i) ASSERT_TRUE(answers(task));
+  EXPECT_FALSE(link->connected(task));
+  setrlimit(RLIMIT_NOFILE, &before);
+}
+
+TEST_F(LinkOverPvm, WhatATaskSendsToItselfComesBackInOrder) {
+  for (std::uint32_t i = 0; i < 10; ++i) link->send(link->self(), encode(Order{Ask::note, i, {}}));
+  for (std::uint32_t i = 0; i < 10; ++i) {
+    const auto event = link->poll();
+    ASSERT_TRUE(event);
+    EXPECT_EQ(event->task, link->self());
+    EXPECT_EQ(decode<Order>(event->bytes)->number, i);
+  }
+  EXPECT_FALSE(link->poll());
 }
 
 TEST_F(LinkOverPvm, OutputOfWorkersComesToOurStderrWithoutMarks) {
