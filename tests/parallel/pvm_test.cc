@@ -260,11 +260,11 @@ TEST_F(Pvm, WhatThereIsNotEnoughMemoryForIsSaid) {
 // The daemon needs two descriptors for each task.
 TEST_F(Pvm, MoreTasksThanFilesMayBeOpenIsSaid) {
   {
-    std::ofstream scene(scratch("many.ray"));
+    std::ofstream scene(scratch("row.ray"));
     for (int i = 0; i < 200; ++i) scene << "sphere 0.1 " << i << " 0 0\n";
   }
   const Finished done =
-      Program(words("prlimit --nofile=64 " + programDirectory() + "/rayshade-host " + scratch("many.ray") +
+      Program(words("prlimit --nofile=64 " + programDirectory() + "/rayshade-host " + scratch("row.ray") +
                     " -R 16 16 --voxels 126 --shades 2 -O " + scratch("many.ppm")),
               scratch("host"), environment())
           .wait(kPatience);
