@@ -53,7 +53,7 @@ struct Peer {
   bool watched = false;      // the owner of this link wants to know of its death
   bool exitWanted = false;   // PVM was asked to tell of its exit
   bool exited = false;       // PVM told of it
-  bool routeOpened = false;  // libpvm was told to open a direct route to it
+  bool routeAgreed = false;  // a direct route may stand, though libpvm has not told of it
   int route = -1;            // the socket of the direct route that stands, which is libpvm's; -1: none
   bool dead = false;         // nothing more is taken from it
   double ending = 0;         // when the first sign of its death came; 0: none

@@ -64,13 +64,23 @@ void Routes::watch(TaskId task) {
 }
 
 void Routes::ask(TaskId peer) {
-  if (anyLeft()) daemon_.sendEmpty(peer, self_ < peer ? Tag::knock : Tag::comeIn);
+  if (!anyLeft()) return;
+  if (self_ < peer) {
+    daemon_.sendEmpty(peer, Tag::knock);
+  } else {
+    letIn(peer);
+  }
+}
+
+void Routes::letIn(TaskId peer) {
+  peers_[peer].routeAgreed = true;
+  daemon_.sendEmpty(peer, Tag::comeIn);
 }
 
 bool Routes::takeHello(TaskId from, Tag tag) {
   if (number(from) <= 0 || from == self_) return false;
   if (tag == Tag::knock && from < self_) {
-    if (anyLeft()) daemon_.sendEmpty(from, Tag::comeIn);
+    if (anyLeft()) letIn(from);
   } else if (tag == Tag::comeIn && self_ < from) {
     if (anyLeft()) open(from);
   }
@@ -79,7 +89,7 @@ bool Routes::takeHello(TaskId from, Tag tag) {
 
 void Routes::open(TaskId task) {
   Peer& peer = peers_[task];
-  if (peer.leaves() || std::exchange(peer.routeOpened, true)) return;
+  if (peer.leaves() || peer.direct() || std::exchange(peer.routeAgreed, true)) return;
   pvm_setopt(PvmRoute, PvmRouteDirect);
   daemon_.check(pvm_initsend(PvmDataRaw), "initsend");
   const int result = pvm_send(number(task), number(Tag::hello));
@@ -95,6 +105,7 @@ bool Routes::takeNotice() {
   Peer& peer = peers_[TaskId{task}];
   standing_ += (descriptor >= 0 ? 1 : 0) - (peer.direct() ? 1 : 0);
   peer.route = descriptor;
+  peer.routeAgreed = false;
   if (descriptor >= 0) {
     hardenSocket(descriptor);
     daemon_.notify(PvmRouteDelete, Tag::route, task);

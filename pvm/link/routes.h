@@ -37,6 +37,7 @@ class Routes {
 
  private:
   void ask(TaskId peer);
+  void letIn(TaskId peer);
   void open(TaskId peer);
   bool farAway(TaskId peer) const { return daemonOf(peer) != daemonOf(self_); }
   bool anyLeft() const { return standing_ < most_; }

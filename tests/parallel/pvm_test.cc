@@ -272,6 +272,7 @@ TEST_F(Pvm, MoreTasksThanFilesMayBeOpenIsSaid) {
   EXPECT_EQ(done.status, 1);
   EXPECT_NE(done.errors.find("ulimit -n"), std::string::npos) << done.errors;
   expectNoPicture("many.ppm");
+  EXPECT_TRUE(std::filesystem::is_empty(scratch("pvm")));
 }
 
 TEST_F(Pvm, MissingTaskProgramsAreNamed) {
