@@ -40,6 +40,7 @@ HostTask::HostTask(Machine& machine, SceneReader readScene, const Survey& survey
   configuration_.settings = settings;
   configuration_.policy = options.policy;
   configuration_.request.seed = options.seed;
+  configuration_.threads = options.threads;
   configuration_.loadEvery = options.dynamicShading ? kLoadEvery : 0.0;
   summary_.objects = survey.objects;
   summary_.host.placement = {Role::host, 0, machine.hosts()[0].name, {}};
@@ -170,16 +171,13 @@ bool HostTask::configure() {
   ++summary_.epochs;
   outbox_.beginEpoch(epoch());
   summary_.reissued += issuing_.recall();
-  std::vector<TaskId> peers;
+  std::vector<TaskId> tasks;
   for (Slave& slave : roster_.slaves()) {
     slave.ready = false;
-    configuration_.number = slave.placement.index;
-    configuration_.threads = options_.threads;
-    outbox_.post(slave.task, configuration_);
-    peers.push_back(slave.task);
+    tasks.push_back(slave.task);
   }
+  outbox_.postToAll(tasks, configuration_);
   outbox_.flush();
-  machine_.connect(peers);
   while (roster_.complete() && !std::ranges::all_of(roster_.slaves(), &Slave::ready)) takeEvents(1);
   return roster_.complete();
 }

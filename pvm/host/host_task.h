@@ -63,7 +63,7 @@ class HostTask {
   Outbox outbox_;
   Roster roster_;
   Survey survey_;
-  Configure configuration_;  // what all slaves are told; `number` is each one's own
+  Configure configuration_;  // what all slaves are told
   Issuing issuing_;
   bool rendering_ = false;  // else tasks are given time to read and to build
   double weighed_ = 0;      // when the weights of shade tasks were sent last

@@ -31,10 +31,12 @@ std::vector<std::uint32_t> weighShadeTasks(const std::vector<Slave>& slaves) {
   return weights;
 }
 
-Roster::Roster(Machine& machine, const HostOptions& options) : machine_(machine), options_(options) {
+Roster::Roster(Machine& machine, const HostOptions& options)
+    : machine_(machine), options_(options), wishes_(options.wishes) {
   const std::vector<HostInfo> hosts = machine.hosts();
   if (hosts.empty()) throw HostError("the virtual machine has no hosts");
-  for (const Placement& placement : mapProcesses(hosts, options.wishes)) {
+  wishes_.voxels = voxelTasksPerCluster(wishes_, hosts.size());
+  for (const Placement& placement : mapProcesses(hosts, wishes_)) {
     Slave slave;
     slave.placement = placement;
     slaves_.push_back(slave);
@@ -54,21 +56,17 @@ Slave* Roster::find(TaskId task) {
 }
 
 void Roster::startMissing() {
+  if (complete()) return;
+  const std::vector<HostInfo> hosts = machine_.hosts();
+  if (hosts.empty()) throw HostError("no host of the virtual machine is left");
+  const std::vector<Placement> mapped = mapProcesses(hosts, wishes_);
   for (std::size_t i = 0; i < slaves_.size(); ++i) {
     Slave& slave = slaves_[i];
     if (slave.task != kNobody) continue;
-    if (slave.summary.task != kNobody && ++successions_ > options_.mostSuccessions)
-      throw HostError("tasks keep dying: given up after " + std::to_string(options_.mostSuccessions) +
-                      " successors; the last to die was " + lastDeath_);
-    if (slave.earlyDeaths >= options_.mostEarlyDeaths)
-      throw HostError("given up after " + std::to_string(slave.earlyDeaths) +
-                      " deaths before it was ready: " + lastDeath_ +
-                      "; with more tasks (--voxels) or hosts each holds less of the scene");
-    const std::vector<HostInfo> hosts = machine_.hosts();
-    const auto mapped = mapProcesses(hosts, options_.wishes);
+    checkSuccession(slave);
     const bool stands = std::any_of(hosts.begin(), hosts.end(),
                                     [&](const HostInfo& h) { return h.name == slave.placement.host; });
-    if (!stands && i < mapped.size()) slave.placement = mapped[i];
+    if (!stands) slave.placement = mapped[i];
     const Spawned spawned = spawn(slave, hosts);
     if (spawned.task == kNobody) throw HostError(spawned.problem);
     slave.task = spawned.task;
@@ -78,6 +76,16 @@ void Roster::startMissing() {
     byTask_[static_cast<std::int32_t>(spawned.task)] = i;
     machine_.watch(spawned.task);
   }
+}
+
+// Throws HostError when a place is not to be filled again.
+void Roster::checkSuccession(const Slave& slave) {
+  if (slave.summary.task != kNobody && ++successions_ > options_.mostSuccessions)
+    throw HostError("tasks keep dying: given up after " + std::to_string(options_.mostSuccessions) +
+                    " successors; the last to die was " + lastDeath_);
+  if (slave.earlyDeaths >= options_.mostEarlyDeaths)
+    throw HostError("given up after " + std::to_string(slave.earlyDeaths) + " deaths before it was ready: " +
+                    lastDeath_ + "; with more tasks (--voxels) or hosts each holds less of the scene");
 }
 
 Spawned Roster::spawn(Slave& slave, const std::vector<HostInfo>& hosts) {

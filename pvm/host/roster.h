@@ -56,10 +56,12 @@ class Roster {
   void lookAfterSilent(Outbox& outbox, double killAfter);
 
  private:
+  void checkSuccession(const Slave& slave);
   Spawned spawn(Slave& slave, const std::vector<HostInfo>& hosts);
 
   Machine& machine_;
   const HostOptions& options_;
+  Wishes wishes_;  // as they were for the first hosts: the same places, whatever hosts come and go
   std::vector<Slave> slaves_;
   std::map<std::int32_t, std::size_t> byTask_;  // of the living
   int successions_ = 0;

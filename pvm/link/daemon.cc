@@ -42,26 +42,27 @@ void Daemon::addSockets(std::vector<pollfd>& sockets) {
   for (int i = 0; i < count; ++i) sockets.push_back({descriptors[i], POLLIN, 0});
 }
 
-void hardenSockets() {
-  int* descriptors = nullptr;
-  const int count = pvm_getfds(&descriptors);
-  for (int i = 0; i < count; ++i) {
-    const int socket = descriptors[i];
-    const auto set = [socket](int level, int option, int value) {
-      setsockopt(socket, level, option, &value, sizeof value);  // what is refused is not needed
-    };
-    fcntl(socket, F_SETFD, FD_CLOEXEC);
-    set(SOL_SOCKET, SO_SNDBUF, kSocketBytes);
-    set(SOL_SOCKET, SO_RCVBUF, kSocketBytes);
-    int domain = 0;
-    socklen_t size = sizeof domain;
-    if (getsockopt(socket, SOL_SOCKET, SO_DOMAIN, &domain, &size) != 0 || domain != AF_INET) continue;
-    set(SOL_SOCKET, SO_KEEPALIVE, 1);
-    set(IPPROTO_TCP, TCP_KEEPIDLE, kSilenceSeconds / 2);
-    set(IPPROTO_TCP, TCP_KEEPINTVL, 1);
-    set(IPPROTO_TCP, TCP_KEEPCNT, kSilenceSeconds / 2);
-    set(IPPROTO_TCP, TCP_USER_TIMEOUT, kSilenceSeconds * 1000);
-  }
+void Daemon::hardenSockets() {
+  std::vector<pollfd> sockets;
+  addSockets(sockets);
+  for (const pollfd& socket : sockets) hardenSocket(socket.fd);
+}
+
+void hardenSocket(int socket) {
+  const auto set = [socket](int level, int option, int value) {
+    setsockopt(socket, level, option, &value, sizeof value);  // what is refused is not needed
+  };
+  fcntl(socket, F_SETFD, FD_CLOEXEC);
+  set(SOL_SOCKET, SO_SNDBUF, kSocketBytes);
+  set(SOL_SOCKET, SO_RCVBUF, kSocketBytes);
+  int domain = 0;
+  socklen_t size = sizeof domain;
+  if (getsockopt(socket, SOL_SOCKET, SO_DOMAIN, &domain, &size) != 0 || domain != AF_INET) return;
+  set(SOL_SOCKET, SO_KEEPALIVE, 1);
+  set(IPPROTO_TCP, TCP_KEEPIDLE, kSilenceSeconds / 2);
+  set(IPPROTO_TCP, TCP_KEEPINTVL, 1);
+  set(IPPROTO_TCP, TCP_KEEPCNT, kSilenceSeconds / 2);
+  set(IPPROTO_TCP, TCP_USER_TIMEOUT, kSilenceSeconds * 1000);
 }
 
 }  // namespace rayshade

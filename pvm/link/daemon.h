@@ -48,6 +48,7 @@ class Daemon {
   // Asks to be told of an event that concerns `id`, by messages with this tag.  `event`: one of PVM's.
   void notify(int event, Tag tag, int id);
   // Adds libpvm's sockets to those that are waited for: each time anew, for routes come and go.
+  void hardenSockets();  // all that libpvm has
   void addSockets(std::vector<pollfd>& sockets);
 
  private:
@@ -55,6 +56,6 @@ class Daemon {
 };
 
 // libpvm leaves its sockets open in children, and lets a lost machine block a send for a quarter of an hour.
-void hardenSockets();
+void hardenSocket(int socket);
 
 }  // namespace rayshade

@@ -45,7 +45,9 @@ bool removeSocketsOfTheDead() {
   std::filesystem::directory_iterator entry(pvmDirectory(), ignored);
   for (; entry != std::filesystem::directory_iterator(); entry.increment(ignored)) {
     const std::string path = entry->path().string(), name = entry->path().filename().string();
-    if (!name.starts_with(prefix) || !mine(path, S_IFSOCK)) continue;
+    const bool isSocket = mine(path, S_IFSOCK);
+    // A file: by writing into it a task shows whose it is.  One that the daemon refuses may leave it.
+    if (!name.starts_with(prefix) || (!isSocket && !mine(path, S_IFREG))) continue;
     const long process = std::strtol(name.c_str() + prefix.size(), nullptr, 10);
     std::ifstream commandLine("/proc/" + std::to_string(process) + "/cmdline");
     const bool lives = commandLine.peek() != std::ifstream::traits_type::eof();
@@ -53,7 +55,7 @@ bool removeSocketsOfTheDead() {
     if (process <= 0 || (lives && process != getpid())) continue;
     // Our own are still open when the daemon has gone and libpvm could not end in order.  The daemon of an added host
     // listens at a socket with the number of its parent, which has ended.
-    if (process == getpid() || knock(path) == MachineState::stale) unlink(path.c_str());
+    if (process == getpid() || !isSocket || knock(path) == MachineState::stale) unlink(path.c_str());
   }
   return someLive;
 }

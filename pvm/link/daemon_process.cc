@@ -28,8 +28,9 @@ namespace {
 
 constexpr double kStartSeconds = 15;  // for the daemon to say that it is ready
 constexpr double kHaltSeconds = 5;    // for the daemon to end its tasks and itself
-constexpr rlim_t kDescriptors =
-    1024;  // the daemon uses select(): it breaks above, and closes each of them one by one
+// As many as may be, for the daemon needs two for each task.  It uses select(), so it breaks above 1024, and closes each of
+// them one by one.
+constexpr rlim_t kDescriptors = 1024;
 
 // In the child of fork(): nothing here allocates.
 [[noreturn]] void becomeDaemon(const char* program, char* const* arguments, int output, pid_t parent) {
@@ -41,8 +42,8 @@ constexpr rlim_t kDescriptors =
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, nullptr);
   rlimit limit{};
-  if (getrlimit(RLIMIT_NOFILE, &limit) == 0 && limit.rlim_cur > kDescriptors) {
-    limit.rlim_cur = kDescriptors;
+  if (getrlimit(RLIMIT_NOFILE, &limit) == 0) {
+    limit.rlim_cur = std::min(kDescriptors, limit.rlim_max);
     setrlimit(RLIMIT_NOFILE, &limit);
   }
   const int nothing = open("/dev/null", O_RDONLY);

@@ -54,7 +54,6 @@ class Link {
 
   virtual TaskId self() const = 0;
   virtual TaskId parent() const = 0;  // who spawned this task; kNobody for the first one
-  virtual void connect(std::span<const TaskId> peers) = 0;  // will often send to these: open fast routes
   virtual void send(TaskId to, std::span<const std::byte> packet) = 0;
   virtual std::optional<LinkEvent> poll() = 0;                // what is there now, without waiting
   virtual std::optional<LinkEvent> wait(double seconds) = 0;  // nothing: the time is over

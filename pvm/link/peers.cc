@@ -19,7 +19,7 @@ void Peers::showsSignOfDeath(TaskId task) {
     peer.ending = steadySeconds();
     ++ending_;
   }
-  if (peer.exited && !peer.direct && peer.packets.gapless()) bury(task, peer);
+  if (peer.exited && !peer.direct() && !peer.routeAgreed && peer.packets.gapless()) bury(task, peer);
 }
 
 void Peers::reapExpired() {

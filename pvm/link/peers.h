@@ -8,6 +8,7 @@
 
 #include <functional>
 #include <map>
+#include <unordered_map>
 
 #include "pvm/link/link.h"
 
@@ -48,17 +49,18 @@ class PacketOrder {
 };
 
 struct Peer {
-  bool child = false;       // spawned here
-  bool watched = false;     // the owner of this link wants to know of its death
-  bool exitWanted = false;  // PVM was asked to tell of its exit
-  bool exited = false;      // PVM told of it
-  bool direct = false;      // a direct route stands
-  int route = -1;           // its socket, which is libpvm's; -1: none
-  bool dead = false;        // nothing more is taken from it
-  double ending = 0;        // when the first sign of its death came; 0: none
-  std::uint32_t sent = 0;   // packets
-  PacketOrder packets;      // from it
+  bool child = false;        // spawned here
+  bool watched = false;      // the owner of this link wants to know of its death
+  bool exitWanted = false;   // PVM was asked to tell of its exit
+  bool exited = false;       // PVM told of it
+  bool routeAgreed = false;  // a direct route may stand, though libpvm has not told of it
+  int route = -1;            // the socket of the direct route that stands, which is libpvm's; -1: none
+  bool dead = false;         // nothing more is taken from it
+  double ending = 0;         // when the first sign of its death came; 0: none
+  std::uint32_t sent = 0;    // packets
+  PacketOrder packets;       // from it
 
+  bool direct() const { return route >= 0; }
   bool leaves() const { return dead || ending != 0; }  // nothing is sent to it
 };
 
@@ -70,7 +72,7 @@ class Peers {
   Peer& operator[](TaskId task) { return peers_[task]; }
   Peer* find(TaskId task);  // null: nothing was exchanged with it
   const Peer* find(TaskId task) const { return const_cast<Peers*>(this)->find(task); }
-  const std::map<TaskId, Peer>& all() const { return peers_; }
+  const std::unordered_map<TaskId, Peer>& all() const { return peers_; }
 
   // Buries it when this sign is the last that was missing.
   void showsSignOfDeath(TaskId task);
@@ -81,8 +83,8 @@ class Peers {
  private:
   void bury(TaskId task, Peer& peer);
 
-  std::map<TaskId, Peer> peers_;
-  int ending_ = 0;  // show a sign of death and are not buried
+  std::unordered_map<TaskId, Peer> peers_;  // node-based: a Peer stays where it is
+  int ending_ = 0;                          // show a sign of death and are not buried
   Buried buried_;
 };
 

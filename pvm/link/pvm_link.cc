@@ -17,6 +17,7 @@ constexpr int kFragmentBytes = 65536;  // a packet in one write; PVM's own 4080 
 constexpr double kLastOutputSeconds = 0.2;  // for the last lines of tasks that were ended
 constexpr double kFarewellSeconds = 1;      // for the tasks of a daemon that has gone: it has ended them, too
 constexpr int kLargestPacket = 1 << 30;
+constexpr double kLongestSleep = 1000;
 
 TaskId enrol() {
   if (lookForMachine() != MachineState::alive)  // libpvm would wait 12 s for a daemon that died
@@ -64,19 +65,26 @@ PvmLink::~PvmLink() {
   }
   output_.endAll();
   if (!daemon_.lost()) pvm_exit();
-  removeRouteSockets(daemon_.lost() && parent_ == kNobody ? kFarewellSeconds : 0);
+  // libpvm removes its own in order; those of tasks that were killed are the first task's to remove.
+  if (daemon_.lost() || parent_ == kNobody)
+    removeRouteSockets(daemon_.lost() && parent_ == kNobody ? kFarewellSeconds : 0);
 }
 
 bool PvmLink::connected(TaskId task) const {
   const Peer* peer = peers_.find(task);
-  return peer != nullptr && peer->direct;
+  return peer != nullptr && peer->direct();
 }
 
 void PvmLink::send(TaskId to, std::span<const std::byte> packet) {
   if (packet.size() > static_cast<std::size_t>(kLargestPacket))
     throw std::length_error("packet of more than 1 GiB");
-  if (!routes_.waitForRoom(to)) return;
-  std::uint32_t place = peers_[to].sent++;
+  if (to == self_) {  // the daemon would only bring it back
+    events_.push_back({LinkEvent::Kind::packet, self_, {}, Bytes(packet.begin(), packet.end())});
+    return;
+  }
+  Peer& peer = peers_[to];
+  if (!routes_.waitForRoom(to, peer)) return;
+  std::uint32_t place = peer.sent++;
   daemon_.check(pvm_initsend(PvmDataRaw), "initsend");
   daemon_.check(pvm_pkuint(&place, 1, 1), "pkuint");
   // pvm_pkbyte reads only, though its type does not say so
@@ -85,41 +93,53 @@ void PvmLink::send(TaskId to, std::span<const std::byte> packet) {
   daemon_.check(pvm_send(number(to), number(Tag::packet)), "send");
 }
 
-std::optional<LinkEvent> PvmLink::poll() {
-  while (events_.empty()) {
-    const int buffer = daemon_.check(pvm_nrecv(-1, -1), "nrecv");
-    if (buffer <= 0) break;
-    if (!take(buffer)) ++refused_;
+std::optional<LinkEvent> PvmLink::wait(double seconds) {
+  const double end = now() + seconds;
+  double left = std::max(seconds, 0.0);
+  for (; events_.empty(); left = std::max(end - now(), 0.0)) {
+    const int buffer = receive(peers_.anyEnding() ? std::min(left, kSettleSeconds / 10) : left);
+    if (buffer > 0 && !take(buffer)) ++refused_;
+    if (buffer > 0) continue;
+    if (peers_.anyEnding()) peers_.reapExpired();
+    if (threads_.takeDone()) events_.push_back({LinkEvent::Kind::jobDone, self_, {}, {}});
+    if (!(left > 0)) break;
   }
-  if (peers_.anyEnding() && events_.empty()) peers_.reapExpired();
   if (events_.empty()) return std::nullopt;
   LinkEvent event = std::move(events_.front());
   events_.pop_front();
   return event;
 }
 
-std::optional<LinkEvent> PvmLink::wait(double seconds) {
-  const double end = now() + seconds;
-  for (;;) {
-    if (auto event = poll()) return event;  // first: a message may lie in libpvm with all sockets quiet
-    if (threads_.takeDone()) return LinkEvent{LinkEvent::Kind::jobDone, self_, {}, {}};
-    double left = end - now();
-    if (!(left > 0)) return std::nullopt;
-    if (peers_.anyEnding()) left = std::min(left, kSettleSeconds / 10);
-    std::vector<pollfd> sockets;
-    daemon_.addSockets(sockets);
-    if (threads_.descriptor() >= 0) sockets.push_back({threads_.descriptor(), POLLIN, 0});
-    ::poll(sockets.data(), sockets.size(), static_cast<int>(std::min(std::ceil(left * 1000), 1e9)));
-  }
+// libpvm looks at its sockets once, or sleeps in the same call: nothing here looks at them before.
+int PvmLink::receive(double seconds) {
+  if (!(seconds > 0)) return daemon_.check(pvm_nrecv(-1, -1), "nrecv");
+  if (threads_.descriptor() >= 0) return receiveOrWake(seconds);
+  const double whole = std::floor(std::min(seconds, kLongestSleep));
+  const double micros = std::min((seconds - whole) * 1e6, 999999.0);
+  timeval left{static_cast<time_t>(whole), static_cast<suseconds_t>(micros)};
+  return daemon_.check(pvm_trecv(-1, -1, &left), "trecv");
+}
+
+// The same when threads may wake this one, which libpvm would not notice.
+int PvmLink::receiveOrWake(double seconds) {
+  const int buffer = daemon_.check(pvm_nrecv(-1, -1), "nrecv");  // a message may lie in libpvm with all sockets quiet
+  if (buffer > 0) return buffer;
+  std::vector<pollfd> sockets;
+  daemon_.addSockets(sockets);
+  sockets.push_back({threads_.descriptor(), POLLIN, 0});
+  ::poll(sockets.data(), sockets.size(), static_cast<int>(std::min(std::ceil(seconds * 1000), 1e9)));
+  return daemon_.check(pvm_nrecv(-1, -1), "nrecv");
 }
 
 void PvmLink::watch(TaskId task) {
   Peer& peer = peers_[task];
   if (std::exchange(peer.watched, true)) return;
-  if (peer.dead)
+  if (peer.dead) {
     events_.push_back({LinkEvent::Kind::taskExit, task, {}, {}});
-  else
-    askForExit(task);
+    return;
+  }
+  askForExit(task);
+  routes_.watch(task);
 }
 
 void PvmLink::askForExit(TaskId task) {

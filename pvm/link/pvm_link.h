@@ -30,9 +30,8 @@ class PvmLink final : public Machine {
 
   TaskId self() const override { return self_; }
   TaskId parent() const override { return parent_; }
-  void connect(std::span<const TaskId> peers) override { routes_.connect(peers); }
   void send(TaskId to, std::span<const std::byte> packet) override;
-  std::optional<LinkEvent> poll() override;
+  std::optional<LinkEvent> poll() override { return wait(0); }
   std::optional<LinkEvent> wait(double seconds) override;
   void watch(TaskId task) override;
   double now() const override { return steadySeconds(); }
@@ -50,7 +49,10 @@ class PvmLink final : public Machine {
  private:
   void askForExit(TaskId task);
   void buried(TaskId task, const Peer& peer);
-  // One PVM message.  False: it is not what it should be.
+  // The next PVM message; 0 or less: the time is over.
+  int receive(double seconds);
+  int receiveOrWake(double seconds);
+  // False: it is not what it should be.
   bool take(int buffer);
   bool takePacket(TaskId from, int bytes);
   bool takeNotice(Tag tag);

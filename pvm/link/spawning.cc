@@ -17,7 +17,7 @@ std::string whyNotStarted(int code) {
     case PvmNoHost:
       return "no such host in the virtual machine";
     case PvmOutOfRes:
-      return "the host has no room for another task";
+      return "the host has no room for another task: its daemon needs two open files for each (ulimit -n)";
     case PvmNoMem:
       return "the host has not enough memory";
     case PvmHostFail:

@@ -25,7 +25,8 @@
 namespace rayshade {
 namespace {
 
-constexpr double kJoinSeconds = 120;  // for all hosts; PVM itself gives up on one after 60
+constexpr double kFarewellSeconds = 0.2;  // for tasks that the daemon has just ended
+constexpr double kJoinSeconds = 120;      // for all hosts; PVM itself gives up on one after 60
 
 std::string whyHostFailed(const std::string& host, int code) {
   switch (code) {
@@ -194,7 +195,7 @@ void VirtualMachine::halt() {
     removeLeftovers();
     if (!alive)
       pvm_exit();  // libpvm forgets the dead daemon - at once now that no file leads to it, else after 4 s
-    removeRouteSockets();
+    removeRouteSockets(kFarewellSeconds);
   }
   if (!privateDirectory_.empty()) {
     std::error_code ignored;

@@ -15,6 +15,12 @@ bool isComplete(const Directory& d, const BinTree& tree) {
                      [&](std::uint32_t task) { return task < d.tasksPerCluster(); });
 }
 
+std::optional<std::uint32_t> placeAmong(const std::vector<TaskId>& tasks, TaskId task) {
+  const auto found = std::find(tasks.begin(), tasks.end(), task);
+  if (found == tasks.end()) return std::nullopt;
+  return static_cast<std::uint32_t>(found - tasks.begin());
+}
+
 std::size_t chooseShadeTask(const Directory& directory, std::uint64_t serial) {
   if (directory.shadeTasks.size() <= 1) return 0;
   std::uint64_t sum = 0;

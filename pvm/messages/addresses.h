@@ -52,6 +52,8 @@ struct Directory {
 inline std::size_t finderCount(const Directory& d) { return d.voxelTasks.size() + d.pyramidTasks.size(); }
 // Does it fit together, and has every voxel of the tree an owner?
 bool isComplete(const Directory& directory, const BinTree& tree);
+// The place of a task among those of its role; nothing: it is not one of them.
+std::optional<std::uint32_t> placeAmong(const std::vector<TaskId>& tasks, TaskId task);
 // Which shade task gets an intersection, the `serial`-th that a task finds: any choice gives the same picture.  Requires
 // that there are any.
 std::size_t chooseShadeTask(const Directory& directory, std::uint64_t serial);

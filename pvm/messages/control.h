@@ -53,7 +53,7 @@ struct ItemsTaken {
   static constexpr std::uint8_t tag = 2;
 };
 
-// Host to all tasks: a new epoch; drop all work, keep the items, answer Ready.
+// Host to all tasks, the same bytes to each: a new epoch; drop all work, keep the items, answer Ready.
 struct Configure {
   static constexpr bool isFact = true;
   static constexpr std::uint8_t tag = 3;
@@ -61,8 +61,7 @@ struct Configure {
   SceneSettings settings;
   BinTree tree;
   Directory directory;
-  std::uint32_t number = 0;   // of the receiver among the tasks of its role
-  std::uint32_t threads = 1;  // of the receiver; 0: as many as its machine has cores
+  std::uint32_t threads = 1;  // of each tracing task; 0: as many as its machine has cores
   Exposure exposure;
   DemandPolicy policy;
   FrameRequest request;
@@ -171,8 +170,8 @@ void serialize(Archive& archive, Exposure& e) {
 
 template <class Archive>
 void serialize(Archive& archive, Configure& m) {
-  archive(m.epoch, m.settings, m.tree, m.directory, m.number, m.threads, m.exposure, m.policy, m.request,
-          m.cellBytes, m.cellBounds, m.loadEvery);
+  archive(m.epoch, m.settings, m.tree, m.directory, m.threads, m.exposure, m.policy, m.request, m.cellBytes,
+          m.cellBounds, m.loadEvery);
 }
 
 template <class Archive>

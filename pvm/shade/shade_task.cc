@@ -7,8 +7,6 @@ void ShadeTask::on(TaskId from, Configure message) {
   context_.beginEpoch(from, message);
   settings_ = std::move(message.settings);
   ledger_.begin(lightPointCount(settings_), finderCount(message.directory));
-  context_.link.connect(message.directory.voxelTasks);
-  context_.link.connect(message.directory.shadeTasks);
   context_.outbox.post(from, Ready{message.epoch, arithmeticFingerprint(), 0, 0, 0});
 }
 

@@ -12,8 +12,6 @@ namespace rayshade {
 
 class ShadeTask {
  public:
-  static constexpr double kHoldSeconds =
-      0.0002;  // nobody waits for one colour; measured: a third of the system time, no wall time
   using Accepted = TypeList<Configure, Finish, Ping, Expect, Answer, LightAnswers>;
 
   explicit ShadeTask(Link& link) : context_(link) {}

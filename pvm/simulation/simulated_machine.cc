@@ -71,7 +71,6 @@ class SimulatedMachine::Inside final : public Link {
   Inside(SimulatedMachine& machine, TaskId self) : machine_(machine), self_(self) {}
   TaskId self() const override { return self_; }
   TaskId parent() const override { return kHost; }
-  void connect(std::span<const TaskId>) override {}
   void send(TaskId to, std::span<const std::byte> packet) override { machine_.sendFrom(self_, to, packet); }
   std::optional<LinkEvent> poll() override { return std::nullopt; }  // the machine delivers by itself
   std::optional<LinkEvent> wait(double) override { return std::nullopt; }

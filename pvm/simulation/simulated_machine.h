@@ -61,7 +61,6 @@ class SimulatedMachine : public Machine {
   // The host's side.
   TaskId self() const override { return kHost; }
   TaskId parent() const override { return kNobody; }
-  void connect(std::span<const TaskId>) override {}
   void send(TaskId to, std::span<const std::byte> packet) override { sendFrom(kHost, to, packet); }
   std::optional<LinkEvent> poll() override;
   std::optional<LinkEvent> wait(double seconds) override;

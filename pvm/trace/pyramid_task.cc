@@ -18,7 +18,8 @@ double distanceTo(const Bounds& box, Vec3 p) {
 }  // namespace
 
 void PyramidTask::on(TaskId from, Configure message) {
-  if (!isComplete(message)) {
+  const std::optional<std::uint32_t> place = placeAmong(message.directory.pyramidTasks, context_.link.self());
+  if (!isComplete(message) || !place) {
     ++context_.outbox.traffic.refused;
     return;
   }
@@ -26,11 +27,9 @@ void PyramidTask::on(TaskId from, Configure message) {
   host_ = from;
   rays_.clear();
   waitingForCell_.clear();
-  const std::uint32_t cluster = message.number % message.directory.clusters;
-  const auto finder = static_cast<std::uint32_t>(message.directory.voxelTasks.size()) + message.number;
+  const std::uint32_t cluster = *place % message.directory.clusters;
+  const auto finder = static_cast<std::uint32_t>(message.directory.voxelTasks.size()) + *place;
   unit_.begin(from, std::move(message), cluster, finder);
-  context_.link.connect(unit_.at.directory.voxelTasks);
-  context_.link.connect(unit_.at.directory.shadeTasks);
   context_.outbox.post(from, Ready{context_.epoch, arithmeticFingerprint(), 0, 0, 0});
   unit_.wantTiles(from);
 }

@@ -17,7 +17,6 @@ namespace rayshade {
 
 class PyramidTask {
  public:
-  static constexpr double kHoldSeconds = 0;  // pyramids are waited for
   using Accepted = TypeList<Configure, Finish, Ping, Weights, TileWork, PrimaryRays, CellItems, Answer>;
 
   explicit PyramidTask(Link& link) : context_(link), unit_(context_, nullptr) {}

@@ -24,7 +24,8 @@ void VoxelTask::on(TaskId from, Items message) {
 
 void VoxelTask::on(TaskId from, Configure message) {
   const Directory& directory = message.directory;
-  if (!isComplete(message) || message.number >= directory.voxelTasks.size()) {
+  const std::optional<std::uint32_t> place = placeAmong(directory.voxelTasks, context_.link.self());
+  if (!isComplete(message) || !place) {
     ++context_.outbox.traffic.refused;
     return;
   }
@@ -32,13 +33,10 @@ void VoxelTask::on(TaskId from, Configure message) {
   context_.beginEpoch(from, message);
   dropWork();
   host_ = from;
-  const std::uint32_t number = message.number, perCluster = directory.tasksPerCluster();
+  const std::uint32_t number = *place, perCluster = directory.tasksPerCluster();
   takesTiles_ = inTiles(message) && directory.pyramidTasks.empty();
   const unsigned threads = message.threads > 0 ? message.threads : context_.link.cores();
   unit_.begin(from, std::move(message), number / perCluster, number);
-  context_.link.connect(unit_.at.directory.voxelTasks);
-  context_.link.connect(unit_.at.directory.shadeTasks);
-  context_.link.connect(unit_.at.directory.pyramidTasks);
   share_.prepare(unit_.at.exposure, unit_.at.tree, unit_.at.directory.voxels, number % perCluster);
   context_.outbox.post(from, Ready{context_.epoch, arithmeticFingerprint(), share_.objects(), share_.owned(),
                                    share_.leftOut()});

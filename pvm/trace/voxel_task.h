@@ -15,7 +15,6 @@ namespace rayshade {
 
 class VoxelTask {
  public:
-  static constexpr double kHoldSeconds = 0;  // rays are waited for
   using Accepted = TypeList<Forget, Items, Configure, Finish, Ping, Weights, PrimaryRays, TileWork, RayTask,
                             ShadowTask, CellWanted, CellItems, Answer>;
 

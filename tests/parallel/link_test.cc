@@ -4,6 +4,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/resource.h>
 
 #include <chrono>
 #include <cstdio>
@@ -20,7 +21,7 @@ namespace {
 constexpr double kPatience = 10;  // seconds, for a loaded machine
 
 // What a worker can be asked for: the first byte of a packet.
-enum class Ask : std::uint8_t { echo, stream, forward, relay, print, leave, die, hang };
+enum class Ask : std::uint8_t { echo, note, stream, forward, relay, print, leave, die, hang };
 
 struct Order {
   Ask ask = Ask::echo;
@@ -57,6 +58,8 @@ int work() {
       case Ask::echo:
         link.send(event->task, event->bytes);
         break;
+      case Ask::note:
+        break;
       case Ask::stream:
         for (std::uint32_t i = 0; i < order->number; ++i) {
           link.send(event->task, encode(Order{Ask::echo, i, Bytes(streamedSize(i))}));
@@ -65,7 +68,6 @@ int work() {
         break;
       case Ask::forward: {
         const TaskId to{static_cast<std::int32_t>(order->number)};
-        link.connect({&to, 1});
         link.send(to, encode(Order{Ask::relay, 0, order->load}));
         break;
       }
@@ -118,9 +120,8 @@ class LinkOverPvm : public testing::Test {
     return next(*link, LinkEvent::Kind::packet).has_value();
   }
   bool connected(TaskId task) {
-    link->connect({&task, 1});
     for (const double end = link->now() + kPatience; link->now() < end && !link->connected(task);)
-      link->wait(0.01);
+      if (!answers(task)) return false;
     return link->connected(task);
   }
 
@@ -153,7 +154,7 @@ TEST_F(LinkOverPvm, OrderIsKeptWhileARouteOpens) {
   constexpr std::uint32_t kCount = 1000;
   link->send(task, encode(Order{Ask::stream, kCount, {}}));
   for (std::uint32_t i = 0; i < kCount; ++i) {
-    if (i == 10) link->connect({&task, 1});
+    if (i < 20) link->send(task, encode(Order{Ask::note, i, {}}));
     const auto event = next(*link, LinkEvent::Kind::packet);
     ASSERT_TRUE(event) << i;
     const auto order = decode<Order>(event->bytes);
@@ -161,7 +162,7 @@ TEST_F(LinkOverPvm, OrderIsKeptWhileARouteOpens) {
     ASSERT_EQ(order->number, i);
     ASSERT_EQ(order->load.size(), streamedSize(i));
   }
-  EXPECT_TRUE(connected(task));
+  EXPECT_TRUE(link->connected(task));
 }
 
 TEST_F(LinkOverPvm, WorkersTalkToEachOther) {
@@ -242,17 +243,52 @@ TEST_F(LinkOverPvm, ATaskThatHangsCanBeKilled) {
   EXPECT_LT(link->now() - start, 1);
 }
 
-TEST_F(LinkOverPvm, ConnectingToTheDeadDoesNotBlock) {
+TEST_F(LinkOverPvm, SendingToTheDeadDoesNotBlock) {
   const TaskId task = worker();
   ASSERT_TRUE(answers(task));
   link->kill(task);
-  link->wait(0.1);
   const double start = link->now();
-  link->connect({&task, 1});
-  const TaskId never{0x7ffff};
-  link->connect({&never, 1});
-  link->wait(0.1);
+  for (const TaskId to : {task, TaskId{0x7ffff}}) {
+    for (int i = 0; i < 50; ++i) link->send(to, encode(Order{}));
+    link->wait(0.01);
+  }
   EXPECT_LT(link->now() - start, 1);
+}
+
+TEST_F(LinkOverPvm, ARouteIsOpenedWhenAPairHasExchangedAFewPackets) {
+  const TaskId task = worker(), other = worker();
+  for (std::uint32_t i = 0; i < Routes::kPacketsByDaemon; ++i) {
+    ASSERT_TRUE(answers(task));
+    EXPECT_FALSE(link->connected(task)) << i;
+  }
+  EXPECT_TRUE(connected(task));
+  ASSERT_TRUE(answers(other));
+  EXPECT_FALSE(link->connected(other));
+}
+
+// Any number of peers can be talked to, whatever number of files may be open.
+TEST_F(LinkOverPvm, WithoutDescriptorsForRoutesPacketsGoByTheDaemons) {
+  rlimit before{};
+  getrlimit(RLIMIT_NOFILE, &before);
+  rlimit few = before;
+  few.rlim_cur = 24;
+  setrlimit(RLIMIT_NOFILE, &few);
+  link.emplace(workerCommand);
+  const TaskId task = worker();
+  for (std::uint32_t i = 0; i < 5 * Routes::kPacketsByDaemon; ++i) ASSERT_TRUE(answers(task));
+  EXPECT_FALSE(link->connected(task));
+  setrlimit(RLIMIT_NOFILE, &before);
+}
+
+TEST_F(LinkOverPvm, WhatATaskSendsToItselfComesBackInOrder) {
+  for (std::uint32_t i = 0; i < 10; ++i) link->send(link->self(), encode(Order{Ask::note, i, {}}));
+  for (std::uint32_t i = 0; i < 10; ++i) {
+    const auto event = link->poll();
+    ASSERT_TRUE(event);
+    EXPECT_EQ(event->task, link->self());
+    EXPECT_EQ(decode<Order>(event->bytes)->number, i);
+  }
+  EXPECT_FALSE(link->poll());
 }
 
 TEST_F(LinkOverPvm, OutputOfWorkersComesToOurStderrWithoutMarks) {

@@ -257,6 +257,24 @@ TEST_F(Pvm, WhatThereIsNotEnoughMemoryForIsSaid) {
   EXPECT_TRUE(inHost && inTask) << inHost << inTask;
 }
 
+// The daemon needs two descriptors for each task.
+TEST_F(Pvm, MoreTasksThanFilesMayBeOpenIsSaid) {
+  {
+    std::ofstream scene(scratch("row.ray"));
+    for (int i = 0; i < 200; ++i) scene << "sphere 0.1 " << i << " 0 0\n";
+  }
+  const Finished done =
+      Program(words("prlimit --nofile=64 " + programDirectory() + "/rayshade-host " + scratch("row.ray") +
+                    " -R 16 16 --voxels 126 --shades 2 -O " + scratch("many.ppm")),
+              scratch("host"), environment())
+          .wait(kPatience);
+  EXPECT_TRUE(done.inTime);
+  EXPECT_EQ(done.status, 1);
+  EXPECT_NE(done.errors.find("ulimit -n"), std::string::npos) << done.errors;
+  expectNoPicture("many.ppm");
+  EXPECT_TRUE(std::filesystem::is_empty(scratch("pvm")));
+}
+
 TEST_F(Pvm, MissingTaskProgramsAreNamed) {
   std::filesystem::create_directories(scratch("empty"));
   const Finished done = startHost("-q -S 1 -R 20 20 scenes/gallery/chess.ray", "picture.png",

@@ -10,7 +10,6 @@ class NullLink : public Link {
  public:
   TaskId self() const override { return TaskId{2}; }
   TaskId parent() const override { return TaskId{1}; }
-  void connect(std::span<const TaskId>) override {}
   void send(TaskId, std::span<const std::byte> packet) override {
     ++packets;
     bytes += packet.size();

@@ -111,6 +111,20 @@ TEST(Outbox, WhatWasOpenGoesWithTheEpochItBelongsTo) {
   EXPECT_EQ(epochs, (std::map<RecordId, Epoch>{{1, Epoch{0}}, {2, Epoch{7}}, {3, Epoch{7}}, {4, Epoch{8}}}));
 }
 
+TEST(Outbox, WhatGoesToAllIsTheSameForEach) {
+  RecordingLink link;
+  Outbox outbox(link);
+  outbox.post(kOther, answer(1));
+  const TaskId all[] = {kOne, kOther};
+  outbox.postToAll(all, answer(2));
+  outbox.post(kOne, answer(3));
+  outbox.flush();
+  std::map<TaskId, std::vector<RecordId>> records;
+  for (const auto& packet : link.sent) records[packet.to] = read(packet.bytes).records;
+  EXPECT_EQ(records, (std::map<TaskId, std::vector<RecordId>>{{kOne, {2, 3}}, {kOther, {1, 2}}}));
+  EXPECT_EQ(outbox.traffic.messagesOut, 4u);
+}
+
 TEST(Outbox, CountsWhatItSends) {
   RecordingLink link;
   Outbox outbox(link);
