@@ -90,9 +90,13 @@ void HostTask::divide() {
   }
   Directory& directory = configuration_.directory;
   directory.clusters = std::max(1u, options_.wishes.clusters);
-  const auto voxelTasks = static_cast<std::uint32_t>(roster_.slavesOf(Role::voxelTrace).size());
-  Division division = divideSpace(survey_, configuration_.request, configuration_.settings, options_,
-                                  voxelTasks / directory.clusters);
+  std::vector<Placement> placements;
+  for (const Slave& slave : roster_.slaves()) placements.push_back(slave.placement);
+  const std::vector<TaskPlace> places = placesOfVoxelTasks(machine_.hosts(), placements, options_.wishes);
+  Division division =
+      divideSpace(survey_, configuration_.request, configuration_.settings, options_, places);
+  if (const std::string problem = whatDoesNotFit(division, places); !problem.empty())
+    throw HostError(problem);
   configuration_.tree = std::move(division.tree);
   directory.voxels = std::move(division.owners);
   for (Slave& slave : roster_.slaves()) slave.hasItems = false;

@@ -46,7 +46,7 @@ void applySchedule(HostProgramOptions& o, std::uint32_t hosts) {
     policy.shadows = ShadowPolicy::local;
     policy.secondariesTravel = false;
   }
-  host.split = o.split == "cost" ? Split::cost : Split::equal;
+  host.split = o.split == "cost" ? Split::cost : o.split == "equal" ? Split::equal : Split::balanced;
   policy.shadeLocally = o.shading ? *o.shading == "local" : o.schedule != "data";
   // Every cluster has somebody to work for.
   if (host.wishes.pyramids > 0) host.wishes.pyramids = std::max(host.wishes.pyramids, host.wishes.clusters);
@@ -78,8 +78,9 @@ void declareHostOptions(CLI::App& app, HostProgramOptions& o) {
   app.add_option("--voxels-per-task", o.host.voxelsPerTask, "voxels that each voxel-trace task holds")
       ->check(wholeNumberFrom(1, 64))
       ->group(tasks);
-  app.add_option("--split", o.split, "voxels of equal size, or of equal predicted cost")
-      ->check(CLI::IsMember({"equal", "cost"}))
+  app.add_option("--split", o.split,
+                 "voxels balanced by memory, then by predicted cost; or of equal size; or of equal cost alone")
+      ->check(CLI::IsMember({"balanced", "equal", "cost"}))
       ->group(tasks);
   app.add_option("--pyramids", o.pyramids, "pyramid-trace tasks (default: by the schedule)")
       ->check(wholeNumberFrom(0, 4096))

@@ -14,7 +14,7 @@ struct HostProgramOptions {
   MachineOptions machine;
   bool plan = false;
   std::string tableFile;
-  std::string schedule = "data", split = "equal";
+  std::string schedule = "data", split = "balanced";
   std::optional<std::uint32_t> pyramids;
   std::optional<std::string> horizon, shadows, shading;
   std::optional<double> cacheMegabytes;

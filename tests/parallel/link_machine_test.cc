@@ -144,7 +144,7 @@ TEST_F(MachineOfPvm, AHostFileThatIsNotThereIsAnError) {
 
 TEST(HostFile, DefaultsStandBeforeTheOptionsOfAHost) {
   std::istringstream in("# comment\nalpha sp=2\n* ep=/build wd=/tmp\n\nbeta sp=3\n& gamma\n  delta\n");
-  const auto hosts = readHostFile(in);
+  const auto hosts = readHostFile(in, "hosts");
   ASSERT_EQ(hosts.size(), 3u);
   EXPECT_EQ(hosts[0].name + "|" + hosts[0].options, "alpha|sp=2");
   EXPECT_EQ(hosts[1].name + "|" + hosts[1].options, "beta|ep=/build wd=/tmp sp=3");

@@ -19,7 +19,7 @@ bool isHere(const std::string& name) { return name == "here" || name == "localho
 
 std::vector<HostInfo> joined(const std::string& hostFile, std::vector<HostInfo> running = {}) {
   std::istringstream in(hostFile);
-  return hostsAfterJoining(std::move(running), readHostFile(in), isHere, "here");
+  return hostsAfterJoining(std::move(running), readHostFile(in, "hosts"), isHere, "here");
 }
 std::string text(const std::vector<HostInfo>& hosts) {
   std::string all;
