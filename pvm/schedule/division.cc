@@ -129,7 +129,7 @@ Division divideSpace(Survey& survey, const FrameRequest& request, const SceneSet
     std::vector<HeldBox> held;
     if (voxels > 1)
       for (const BoundsSample::Box& box : survey.held.boxes())
-        held.push_back({box.bounds, box.weight * box.size});
+        held.push_back({box.bounds, box.weight * box.size, box.weight});
     division.tree = buildBalancedTree(survey.world, cells, survey.density, std::move(held), std::move(costs),
                                       portionsOf(survey, places, voxels));
   } else {

@@ -9,29 +9,39 @@ namespace rayshade {
 namespace {
 
 // Planes that are admitted are looked at more closely one for each of so many shares of the bytes, on each axis.
-constexpr std::size_t kGroups = 16;
+constexpr std::size_t kGroups = 32;
 constexpr double kAsGood = 0.02;  // of planes that are not admitted, those that differ by less count as equal
 
 struct Plane {
   Cut cut;
-  double fullest = kInfinity;  // bytes of the fuller side, relative to its portion
-  double twice = 0;            // bytes that are held on both sides, relative to all
+  double fullest = kInfinity;  // what the fuller side has, relative to its portion
+  double twice = 0;            // what is held on both sides, relative to all
   double badness() const { return fullest + twice; }
 };
 
+// What there is of objects: the larger part counts, of the bytes or of the number.
+struct Amount {
+  double bytes = 0, objects = 0;
+
+  void add(const Amount& a) {
+    bytes += a.bytes;
+    objects += a.objects;
+  }
+};
+
 struct Edge {
-  double at, bytes;
+  double at;
+  Amount amount;
   bool begins;  // an object begins here, else it ends
 };
 
 class Planes {
  public:
-  Planes(const Bounds& box, std::span<const HeldBox> objects, const Portion& low, const Portion& high,
-         double slack)
-      : box_(box), objects_(objects), slack_(slack) {
-    for (const HeldBox& object : objects) all_ += object.bytes;
-    lowShare_ = low.bytes / (low.bytes + high.bytes);
-    if (!(all_ > 0 && all_ < kInfinity && lowShare_ > 0 && lowShare_ < 1)) return;
+  // `shares`: by number of voxels below, their share of the bytes.
+  Planes(const Bounds& box, std::span<const HeldBox> objects, const std::vector<double>& shares, double slack)
+      : box_(box), objects_(objects), shares_(shares), slack_(slack) {
+    for (const HeldBox& object : objects) all_.add({object.bytes, object.objects});
+    if (!(all_.bytes > 0 && all_.bytes < kInfinity && all_.objects > 0 && all_.objects < kInfinity)) return;
     for (int axis = 0; axis < 3; ++axis) look(axis);
   }
 
@@ -54,47 +64,72 @@ class Planes {
     const double from = box_.low[axis], to = box_.high[axis];
     std::vector<Edge> edges;
     edges.reserve(2 * objects_.size() + 1);
-    double begun = 0, ended = 0;
+    Amount begun, ended;
     for (const HeldBox& object : objects_) {
       const double low = object.box.low[axis], high = object.box.high[axis];
+      const Amount amount{object.bytes, object.objects};
       if (low <= from) {
-        begun += object.bytes;
+        begun.add(amount);
       } else if (low < to) {
-        edges.push_back({low, object.bytes, true});
+        edges.push_back({low, amount, true});
       }
-      if (high < to) edges.push_back({std::max(high, from), object.bytes, false});
+      if (high < to) edges.push_back({std::max(high, from), amount, false});
     }
     std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) { return a.at < b.at; });
-    edges.push_back({to, 0, true});
+    edges.push_back({to, {}, true});
     double last = from;
     for (const Edge& edge : edges) {
       const double middle = last + 0.5 * (edge.at - last);
-      if (last < middle && middle < edge.at) consider({axis, middle}, begun, all_ - ended);
+      if (last < middle && middle < edge.at) consider({axis, middle, 1}, begun, ended);
       last = edge.at;
-      (edge.begins ? begun : ended) += edge.bytes;
+      (edge.begins ? begun : ended).add(edge.amount);
     }
   }
 
-  void consider(const Cut& cut, double lowBytes, double highBytes) {
-    const Plane plane{cut,
-                      std::max(lowBytes / (all_ * lowShare_), highBytes / (all_ * (1 - lowShare_))),
-                      (lowBytes + highBytes - all_) / all_};
+  // Of a plane: what has begun below it, and what has ended there.
+  void consider(Cut cut, const Amount& begun, const Amount& ended) {
+    const double lowBytes = begun.bytes / all_.bytes, highBytes = 1 - ended.bytes / all_.bytes;
+    const double low = std::max(lowBytes, begun.objects / all_.objects);
+    const double high = std::max(highBytes, 1 - ended.objects / all_.objects);
+    const double share = lowBytes / (lowBytes + highBytes);
+    cut.below = belowFor(share);
+    const double lowShare = shares_[cut.below];
+    const Plane plane{cut, std::max(low / lowShare, high / (1 - lowShare)),
+                      std::max(lowBytes + highBytes, (begun.objects - ended.objects) / all_.objects + 1) - 1};
     Plane& best = best_[static_cast<std::size_t>(cut.axis)];
     if (plane.badness() < best.badness()) best = plane;
     if (!(plane.fullest <= slack_)) return;
-    const double first = 1 - slack_ * (1 - lowShare_), width = slack_ - 1;
-    const double at = width > 0 ? (lowBytes / all_ - first) / width * kGroups : 0;
-    const auto group = static_cast<std::size_t>(std::clamp(at, 0.0, kGroups - 1.0));
+    const auto group = static_cast<std::size_t>(std::clamp(share * kGroups, 0.0, kGroups - 1.0));
     Plane& kept = admitted_[static_cast<std::size_t>(cut.axis) * kGroups + group];
     if (kept.fullest == kInfinity || plane.twice < kept.twice) kept = plane;
   }
 
+  // So many voxels below that their share is nearest.
+  std::uint32_t belowFor(double share) const {
+    const auto voxels = static_cast<std::uint32_t>(shares_.size() - 1), least = (voxels + 2) / 3;
+    const auto first = shares_.begin() + least, last = shares_.begin() + (voxels - least);
+    auto at = std::lower_bound(first, last, share);
+    if (at != first && share - *(at - 1) < *at - share) --at;
+    return static_cast<std::uint32_t>(at - shares_.begin());
+  }
+
   const Bounds& box_;
   std::span<const HeldBox> objects_;
-  double slack_, all_ = 0, lowShare_ = 0.5;
+  const std::vector<double>& shares_;
+  double slack_;
+  Amount all_;
   std::array<Plane, 3 * kGroups> admitted_;
   std::array<Plane, 3> best_;
 };
+
+// By number of voxels below, from none to all: their share of all portions.
+std::vector<double> sharesBelow(std::span<const Portion> portions, double Portion::*of) {
+  std::vector<double> sums{0};
+  for (const Portion& portion : portions) sums.push_back(sums.back() + portion.*of);
+  const double all = sums.back();
+  for (double& sum : sums) sum /= all;
+  return sums;
+}
 
 // Work beyond the portion of the busier side and at the plane, relative to all.
 double workOf(const Cut& cut, const Bounds& box, std::span<const CostBox> costs, double lowShare) {
@@ -123,14 +158,14 @@ double shareBelow(const Bounds& box, int axis, double split) {
 }
 
 std::optional<Cut> balancedCut(const Bounds& box, std::span<const HeldBox> objects,
-                               std::span<const CostBox> costs, const Portion& low, const Portion& high,
-                               double slack) {
-  const Planes planes(box, objects, low, high, slack);
-  const double lowShare = low.work / (low.work + high.work);
+                               std::span<const CostBox> costs, std::span<const Portion> portions, double slack) {
+  const std::vector<double> bytes = sharesBelow(portions, &Portion::bytes);
+  const std::vector<double> work = sharesBelow(portions, &Portion::work);
+  const Planes planes(box, objects, bytes, slack);
   std::optional<Cut> best;
   double least = kInfinity;
   for (const Plane& plane : planes.worthALook()) {
-    const double sum = plane.twice + workOf(plane.cut, box, costs, lowShare);
+    const double sum = plane.twice + workOf(plane.cut, box, costs, work[plane.cut.below]);
     if (sum < least) {
       least = sum;
       best = plane.cut;

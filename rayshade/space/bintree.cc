@@ -50,7 +50,7 @@ class Cutter {
   // Shares out the bytes of objects: by voxel, which portion each is to have.
   void balance(std::vector<Portion> portions, double allBytes) {
     portions_ = std::move(portions);
-    mostBytes_ = kFullest * allBytes / sum(0, static_cast<std::uint32_t>(portions_.size())).bytes;
+    mostBytes_ = kFullest * allBytes / bytesOf(portions_);
   }
 
   // `first`: the number of the first voxel.
@@ -60,8 +60,7 @@ class Cutter {
       cutCells(box, cubes, depth, kVoxelFlag);
       return;
     }
-    const std::uint32_t below = voxels / 2;
-    const auto [axis, split] = place(box, first, voxels, contents);
+    const auto [axis, split, below] = place(box, first, voxels, contents);
     const auto [low, high] = cut(box, axis, split, 0);
     const auto middle = std::partition(cubes.begin(), cubes.end(), [&](const DensityGrid::Cube& cube) {
       return (index(cube, axis) + 0.5) * side_ < split;
@@ -90,28 +89,25 @@ class Cutter {
   // What has been held twice further up leaves less for the cuts below: each may take its part of what is left.
   static constexpr double kFullest = 1.2;  // bytes of a voxel, in portions
 
-  Portion sum(std::uint32_t first, std::uint32_t voxels) const {
-    Portion all{0, 0};
-    for (std::uint32_t i = first; i < first + voxels; ++i) {
-      all.bytes += portions_[i].bytes;
-      all.work += portions_[i].work;
-    }
-    return all;
+  static double bytesOf(std::span<const Portion> portions) {
+    double bytes = 0;
+    for (const Portion& portion : portions) bytes += portion.bytes;
+    return bytes;
   }
 
   // Where the box of some voxels is cut.
   Cut place(const Bounds& box, std::uint32_t first, std::uint32_t voxels, const Contents& contents) const {
-    const std::uint32_t below = voxels / 2;
     if (!contents.objects.empty()) {
-      const Portion low = sum(first, below), high = sum(first + below, voxels - below);
+      const auto portions = std::span(portions_).subspan(first, voxels);
       double bytes = 0;
       for (const HeldBox& object : contents.objects) bytes += object.bytes;
-      const double room = mostBytes_ * (low.bytes + high.bytes) / bytes;
+      const double room = mostBytes_ * bytesOf(portions) / bytes;
       const double slack = room > 1 ? std::pow(room, 1 / std::ceil(std::log2(voxels))) : 1;
-      if (const auto cut = balancedCut(box, contents.objects, contents.costs, low, high, slack)) return *cut;
+      if (const auto cut = balancedCut(box, contents.objects, contents.costs, portions, slack)) return *cut;
     }
+    const std::uint32_t below = voxels / 2;
     const int axis = longestAxis(box.size());
-    return {axis, splitAt(box, axis, static_cast<double>(below) / voxels, contents.costs)};
+    return {axis, splitAt(box, axis, static_cast<double>(below) / voxels, contents.costs), below};
   }
 
   // Where the box is cut so that `share` of the costs, or of the length when there are none, is on the low side.

@@ -59,7 +59,7 @@ struct CostBox {
 // An object, or several alike, as it is held by every task whose voxels it touches.
 struct HeldBox {
   Bounds box;  // padded
-  double bytes = 0;
+  double bytes = 0, objects = 1;
 };
 // What a voxel is to have, in proportion to the others; both above 0.
 struct Portion {
