@@ -11,8 +11,8 @@
 namespace rayshade {
 namespace {
 
-constexpr long kMostSpeed = 1'000'000;        // PVM takes 1 to this
-constexpr long kMostMemory = 1'000'000'000;   // MB
+constexpr long kMostSpeed = 1'000'000;       // PVM takes 1 to this
+constexpr long kMostMemory = 1'000'000'000;  // MB
 
 // A whole number from 1 to `most` behind `word=`; `at`: for messages.
 long numberIn(const std::string& option, long most, const std::string& at) {
@@ -71,7 +71,8 @@ std::vector<HostLine> readHostFile(std::istream& in, const std::string& file) {
     std::string name, options;
     if (!(words >> name)) continue;
     if (name == "#") memory.read(words, at);
-    if (name[0] == '#' || name[0] == '&') continue;  // &: only options, for a host that somebody may add later
+    if (name[0] == '#' || name[0] == '&')
+      continue;  // &: only options, for a host that somebody may add later
     for (std::string option; words >> option;) options += (options.empty() ? "" : " ") + option;
     const int speed = speedOf(options, at);
     if (name == "*") {

@@ -104,7 +104,8 @@ int run(HostProgramOptions& options, Need& need) {
     const std::vector<HostInfo> hosts = plannedHosts(lines);
     options.host.wishes.memory = memoriesOf(lines, hosts[0].name);
     applySchedule(options, static_cast<std::uint32_t>(hosts.size()));
-    std::fputs(describePlan(hosts, options.host, survey, {view, head.picture}, head.settings, work).c_str(),
+    std::fputs(describePlan(hosts, options.host, std::move(survey), {view, head.picture}, head.settings, work)
+                   .c_str(),
                stdout);
     return 0;
   }
@@ -134,7 +135,8 @@ int run(HostProgramOptions& options, Need& need) {
   applySchedule(options, static_cast<std::uint32_t>(hosts));
   options.host.wishes = neededTasks(work, options.host, hosts).wishes;
   HostTask host(
-      link, [&](SceneSink& sink) { parseScene(again, sink); }, survey, head.settings, options.host);
+      link, [&](SceneSink& sink) { parseScene(again, sink); }, std::move(survey), head.settings,
+      options.host);
   const std::int32_t everyRows = rowsBetweenLines(options.render, head);
   need.what = "for the picture";
   Picture sum{area.width, area.height, {}};

@@ -39,8 +39,8 @@ std::vector<Portion> portionsOf(const Survey& survey, const std::vector<TaskPlac
     rooms.push_back(place.room == TaskPlace::kUnknown
                         ? kInfinity
                         : static_cast<double>(place.room) - static_cast<double>(survey.everywhere));
-  const std::vector<double> shares =
-      sharesOf(kCopies * static_cast<double>(std::max<std::uint64_t>(survey.bytes - survey.everywhere, 1)), rooms);
+  const std::vector<double> shares = sharesOf(
+      kCopies * static_cast<double>(std::max<std::uint64_t>(survey.bytes - survey.everywhere, 1)), rooms);
   std::vector<Portion> portions;
   for (std::uint32_t voxel = 0; voxel < voxels; ++voxel)
     portions.push_back({shares[voxel % places.size()], places[voxel % places.size()].speed});
@@ -78,8 +78,8 @@ std::vector<TaskPlace> placesOfVoxelTasks(const std::vector<HostInfo>& hosts,
                                           const std::vector<Placement>& placements, const Wishes& wishes) {
   std::vector<TaskPlace> places;
   const std::uint32_t clusters = std::max(1u, wishes.clusters);
-  const auto voxelTasks = static_cast<std::uint32_t>(
-      std::ranges::count(placements, Role::voxelTrace, &Placement::role));
+  const auto voxelTasks =
+      static_cast<std::uint32_t>(std::ranges::count(placements, Role::voxelTrace, &Placement::role));
   places.resize(std::max(1u, voxelTasks / clusters));
   for (TaskPlace& place : places) place.speed = kInfinity;
   for (std::size_t i = 0; i < hosts.size(); ++i) {
@@ -133,8 +133,8 @@ Division divideSpace(Survey& survey, const FrameRequest& request, const SceneSet
     division.tree = buildBalancedTree(survey.world, cells, survey.density, std::move(held), std::move(costs),
                                       portionsOf(survey, places, voxels));
   } else {
-    division.tree = buildBinTree(survey.world, {.voxels = voxels, .cells = cells}, survey.density,
-                                 std::move(costs));
+    division.tree =
+        buildBinTree(survey.world, {.voxels = voxels, .cells = cells}, survey.density, std::move(costs));
   }
   for (std::uint32_t voxel = 0; voxel < voxelCount(division.tree); ++voxel)
     division.owners.push_back(voxel % tasks);
@@ -161,13 +161,13 @@ std::string whatDoesNotFit(const Division& division, const std::vector<TaskPlace
   }
   if (!(missing > 0)) return "";
   std::string text = "not enough memory for the scene: its objects take about " + megabytes(all) +
-                     " in the voxel-trace tasks; task " + std::to_string(worst) + " on " + places[worst].host +
-                     " would hold " + megabytes(division.expected[worst].bytes) + " and has room for " +
-                     megabytes(roomOf(worst)) + "; about " +
+                     " in the voxel-trace tasks; task " + std::to_string(worst) + " on " +
+                     places[worst].host + " would hold " + megabytes(division.expected[worst].bytes) +
+                     " and has room for " + megabytes(roomOf(worst)) + "; about " +
                      megabytes(kPeak * missing) + " more memory is needed, on these hosts or on more of them";
   if (static_cast<double>(division.largestWhole) > roomOf(worst))
-    text += "; one thing that cannot be divided takes " +
-            megabytes(static_cast<double>(division.largestWhole));
+    text +=
+        "; one thing that cannot be divided takes " + megabytes(static_cast<double>(division.largestWhole));
   return text;
 }
 

@@ -33,7 +33,7 @@ struct Division {
   struct Held {
     double objects = 0, bytes = 0;
   };
-  std::vector<Held> expected;  // by task: what it will hold, about
+  std::vector<Held> expected;      // by task: what it will hold, about
   std::uint64_t largestWhole = 0;  // the largest thing in bytes that cannot be divided
 };
 

@@ -88,8 +88,8 @@ std::vector<Placement> mapProcesses(const std::vector<HostInfo>& hosts, const Wi
   }
   for (std::uint32_t i = 0; i < shades; ++i) {
     const double more = expectedWork(Role::shade);
-    placements.push_back({Role::shade, i, put(*leastLoaded(more, anywhere), more),
-                          "least tracing work is expected there"});
+    placements.push_back(
+        {Role::shade, i, put(*leastLoaded(more, anywhere), more), "least tracing work is expected there"});
   }
   return placements;
 }

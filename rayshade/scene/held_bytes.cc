@@ -6,9 +6,9 @@
 namespace rayshade {
 namespace {
 
-constexpr std::uint64_t kHeader = 16;        // of a block of memory
-constexpr std::uint64_t kTableEntry = 48;    // number and index in a hash table
-constexpr std::uint64_t kAccelerator = 72;   // of an object: target, leaf, its part of the nodes; by measurement
+constexpr std::uint64_t kHeader = 16;  // of a block of memory
+constexpr std::uint64_t kAccelerator =
+    72;  // of an object: target, leaf, its part of the nodes; by measurement
 
 template <class T>
 std::uint64_t bytesOf(const std::vector<T>& list) {
@@ -79,7 +79,7 @@ std::uint64_t heldBytes(const SceneObject& object) {
 }
 
 std::uint64_t heldBytes(const SceneNode& node) {
-  return sizeof(PlacedNode) + kTableEntry + bytesOutside(node);
+  return sizeof(PlacedNode) + kTableEntryBytes + bytesOutside(node);
 }
 
 }  // namespace rayshade

@@ -12,6 +12,8 @@ namespace rayshade {
 std::uint64_t heldBytes(const SceneObject& object);
 std::uint64_t heldBytes(const SceneNode& node);
 
+inline constexpr std::uint64_t kTableEntryBytes = 48;  // of a hash table: number and index
+
 // What a shape or a node holds outside of itself.
 std::uint64_t bytesOutside(const AnyShape& shape);
 std::uint64_t bytesOutside(const AllShapes::Vectors& shapes);

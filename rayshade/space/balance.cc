@@ -158,7 +158,8 @@ double shareBelow(const Bounds& box, int axis, double split) {
 }
 
 std::optional<Cut> balancedCut(const Bounds& box, std::span<const HeldBox> objects,
-                               std::span<const CostBox> costs, std::span<const Portion> portions, double slack) {
+                               std::span<const CostBox> costs, std::span<const Portion> portions,
+                               double slack) {
   const std::vector<double> bytes = sharesBelow(portions, &Portion::bytes);
   const std::vector<double> work = sharesBelow(portions, &Portion::work);
   const Planes planes(box, objects, bytes, slack);

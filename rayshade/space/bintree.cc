@@ -182,8 +182,8 @@ class Cutter {
     return best;
   }
 
-  double side_;                // of a cube                                          [world units]
-  std::uint64_t cellObjects_;  // a cell with more is cut, if it can be
+  double side_;                    // of a cube                                          [world units]
+  std::uint64_t cellObjects_;      // a cell with more is cut, if it can be
   std::vector<Portion> portions_;  // by voxel, of what is shared out
   double mostBytes_ = 0;           // of a portion of 1
 };

@@ -2,6 +2,8 @@
 #include "rayshade/space/bounds_sample.h"
 
 #include <algorithm>
+#include <numeric>
+#include <ranges>
 
 #include "rayshade/base/random.h"
 
@@ -34,10 +36,13 @@ void BoundsSample::add(const Bounds& bounds, double size) {
 }
 
 std::vector<BoundsSample::Box> BoundsSample::boxes() const {
-  std::vector<Kept> inOrder = kept_;
-  std::sort(inOrder.begin(), inOrder.end(), [](const Kept& a, const Kept& b) { return a.number < b.number; });
+  std::vector<std::uint32_t> order(kept_.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::ranges::sort(order, {}, [&](std::uint32_t i) { return kept_[i].number; });
   std::vector<Box> boxes;
-  for (const Kept& k : inOrder)
+  boxes.reserve(kept_.size());
+  for (const Kept& k :
+       order | std::views::transform([&](std::uint32_t i) -> const Kept& { return kept_[i]; }))
     boxes.push_back({k.bounds, std::max(1.0, threshold_ / k.size), k.size});
   return boxes;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <utility>
 
 #include "rayshade/scene/object_stream.h"
 #include "rayshade/space/bounds_sample.h"
@@ -22,13 +23,13 @@ struct WholeThings {
 };
 
 struct Survey {
-  std::uint64_t objects = 0;     // of the world
-  std::uint64_t bytes = 0;       // that they take in the memory of tasks, with what they use
-  std::uint64_t everywhere = 0;  // of that, what is unbounded: every task has it
-  Bounds world;                  // of the bounded ones, at the exposure of the survey
-  DensityGrid density;           // of all of them, for cutting space into cells
-  BoundsSample sample;           // of the bounded ones, for predicting where the work will be
-  BoundsSample held{1 << 16};    // of the bounded ones by their bytes, for sharing out memory
+  std::uint64_t objects = 0;         // of the world
+  std::uint64_t bytes = 0;           // that they take in the memory of tasks, with what they use
+  std::uint64_t everywhere = 0;      // of that, what is unbounded: every task has it
+  Bounds world;                      // of the bounded ones, at the exposure of the survey
+  DensityGrid density;               // of all of them, for cutting space into cells
+  BoundsSample sample;               // of the bounded ones, for predicting where the work will be
+  BoundsSample held{1 << 16};        // of the bounded ones by their bytes, for sharing out memory
   std::array<WholeThings, 4> whole;  // by Whole
   bool moves = false;                // something moves: another exposure needs another survey
 };
@@ -36,19 +37,19 @@ struct Survey {
 class SurveySink : public SceneSink {
  public:
   explicit SurveySink(const Exposure& exposure)
-      : stream_(exposure, [this](const SceneObject& object, const Bounds& bounds,
-                                 std::span<const NodeItem* const>,
-                                 const ObjectStream::Brought& brought) { count(object, bounds, brought); }) {}
+      : stream_(exposure,
+                [this](const SceneObject& object, const Bounds& bounds, std::span<const NodeItem* const>,
+                       const ObjectStream::Brought& brought) { count(object, bounds, brought); }) {}
 
   void surface(SurfaceId, const Surface&) override {}
   void node(NodeId id, SceneNode node) override;
   void object(SceneObject object) override;
   void endOfStatement() override { stream_.endOfStatement(); }
 
-  Survey survey() const {
-    Survey done = survey_;
-    done.objects = stream_.objects();
-    return done;
+  // When all was read, once: nothing of it stays here.
+  Survey survey() {
+    survey_.objects = stream_.objects();
+    return std::move(survey_);
   }
 
  private:

@@ -39,8 +39,8 @@ void measure(const std::string& scene, const HostOptions& options) {
   Survey survey = sink.survey();
   const View view = *viewOf(head.camera, head.picture);
   for (const std::uint32_t tasks : kTasks) {
-    const Division division = divideSpace(survey, {view, head.picture}, head.settings, options,
-                                          std::vector<TaskPlace>(tasks));
+    const Division division =
+        divideSpace(survey, {view, head.picture}, head.settings, options, std::vector<TaskPlace>(tasks));
     Held held{std::vector<double>(tasks), std::vector<double>(tasks)};
     double objects = 0, bytes = 0;
     ObjectStream stream({}, [&](const SceneObject&, const Bounds& bounds, std::span<const NodeItem* const>,
