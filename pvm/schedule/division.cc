@@ -130,7 +130,7 @@ Division divideSpace(Survey& survey, const FrameRequest& request, const SceneSet
     if (voxels > 1)
       for (const BoundsSample::Box& box : survey.held.boxes())
         held.push_back({box.bounds, box.weight * box.size, box.weight});
-    division.tree = buildBalancedTree(survey.world, cells, survey.density, std::move(held), std::move(costs),
+    division.tree = buildBalancedTree(survey.world, cells, survey.density, held, std::move(costs),
                                       portionsOf(survey, places, voxels));
   } else {
     division.tree =

@@ -2,7 +2,6 @@
 #include "rayshade/accel/bvh_build.h"
 
 #include <algorithm>
-#include <deque>
 #include <numeric>
 #include <stdexcept>
 
@@ -35,6 +34,32 @@ struct Piece {
   }
 };
 
+// Nodes while their number is not known: a vector that grows is there twice.
+class GrowingNodes {
+ public:
+  std::uint32_t add() {
+    if (size_ % kPart == 0) parts_.emplace_back();
+    parts_.back().emplace_back();
+    return size_++;
+  }
+  BvhNode& operator[](std::uint32_t i) { return parts_[i / kPart][i % kPart]; }
+
+  std::vector<BvhNode> take() {
+    std::vector<BvhNode> all;
+    all.reserve(size_);
+    for (std::vector<BvhNode>& part : parts_) {
+      all.insert(all.end(), part.begin(), part.end());
+      std::vector<BvhNode>().swap(part);
+    }
+    return all;
+  }
+
+ private:
+  static constexpr std::uint32_t kPart = 4096;
+  std::vector<std::vector<BvhNode>> parts_;
+  std::uint32_t size_ = 0;
+};
+
 struct Range {
   std::uint32_t first, count;
   int depth;           // below the root
@@ -48,10 +73,10 @@ class Builder {
 
   ChildRef build() { return build(measure(0, static_cast<std::uint32_t>(pieces_.size()), 0)); }
 
-  // What was built.  How many nodes there will be is not known before, and a vector that grows is there twice.
+  // What was built.
   std::vector<BvhNode> takeNodes() {
     std::vector<Piece>().swap(pieces_);
-    return {nodes_.begin(), nodes_.end()};
+    return nodes_.take();
   }
 
  private:
@@ -85,8 +110,7 @@ class Builder {
       children[widest] = measure(opened.first, low, opened.depth + 1);
       children[count++] = measure(opened.first + low, opened.count - low, opened.depth + 1);
     }
-    const std::uint32_t here = static_cast<std::uint32_t>(nodes_.size());
-    nodes_.emplace_back();
+    const std::uint32_t here = nodes_.add();
     constexpr float kNowhere = std::numeric_limits<float>::infinity();
     for (int axis = 0; axis < 3; ++axis)
       for (int child = 0; child < 4; ++child) {
@@ -176,7 +200,7 @@ class Builder {
 
   std::vector<Piece> pieces_;
   std::vector<std::uint32_t>& order_;
-  std::deque<BvhNode> nodes_;
+  GrowingNodes nodes_;
 };
 
 }  // namespace

@@ -38,9 +38,10 @@ struct Edge {
 class Planes {
  public:
   // `shares`: by number of voxels below, their share of the bytes.
-  Planes(const Bounds& box, std::span<const HeldBox> objects, const std::vector<double>& shares, double slack)
-      : box_(box), objects_(objects), shares_(shares), slack_(slack) {
-    for (const HeldBox& object : objects) all_.add({object.bytes, object.objects});
+  Planes(const Bounds& box, std::span<const HeldBox> objects, std::span<const std::uint32_t> inside,
+         const std::vector<double>& shares, double slack)
+      : box_(box), objects_(objects), inside_(inside), shares_(shares), slack_(slack) {
+    for (const std::uint32_t i : inside) all_.add({objects[i].bytes, objects[i].objects});
     if (!(all_.bytes > 0 && all_.bytes < kInfinity && all_.objects > 0 && all_.objects < kInfinity)) return;
     for (int axis = 0; axis < 3; ++axis) look(axis);
   }
@@ -63,9 +64,10 @@ class Planes {
   void look(int axis) {
     const double from = box_.low[axis], to = box_.high[axis];
     std::vector<Edge> edges;
-    edges.reserve(2 * objects_.size() + 1);
+    edges.reserve(2 * inside_.size() + 1);
     Amount begun, ended;
-    for (const HeldBox& object : objects_) {
+    for (const std::uint32_t i : inside_) {
+      const HeldBox& object = objects_[i];
       const double low = object.box.low[axis], high = object.box.high[axis];
       const Amount amount{object.bytes, object.objects};
       if (low <= from) {
@@ -115,6 +117,7 @@ class Planes {
 
   const Bounds& box_;
   std::span<const HeldBox> objects_;
+  std::span<const std::uint32_t> inside_;
   const std::vector<double>& shares_;
   double slack_;
   Amount all_;
@@ -158,11 +161,11 @@ double shareBelow(const Bounds& box, int axis, double split) {
 }
 
 std::optional<Cut> balancedCut(const Bounds& box, std::span<const HeldBox> objects,
-                               std::span<const CostBox> costs, std::span<const Portion> portions,
-                               double slack) {
+                               std::span<const std::uint32_t> inside, std::span<const CostBox> costs,
+                               std::span<const Portion> portions, double slack) {
   const std::vector<double> bytes = sharesBelow(portions, &Portion::bytes);
   const std::vector<double> work = sharesBelow(portions, &Portion::work);
-  const Planes planes(box, objects, bytes, slack);
+  const Planes planes(box, objects, inside, bytes, slack);
   std::optional<Cut> best;
   double least = kInfinity;
   for (const Plane& plane : planes.worthALook()) {

@@ -25,9 +25,10 @@ struct Cut {
 
 // `portions`: what the voxels of the box, two at least, are to have.  `slack`: a side may have so many times its portion of the
 // bytes, at least 1.  Nothing if there is nothing to be shared out, or no plane inside of the box.
+// `inside`: which of the objects touch the box.
 std::optional<Cut> balancedCut(const Bounds& box, std::span<const HeldBox> objects,
-                               std::span<const CostBox> costs, std::span<const Portion> portions,
-                               double slack);
+                               std::span<const std::uint32_t> inside, std::span<const CostBox> costs,
+                               std::span<const Portion> portions, double slack);
 
 // The part of a box below the plane, by length.
 double shareBelow(const Bounds& box, int axis, double split);

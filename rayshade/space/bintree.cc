@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "rayshade/space/balance.h"
 
@@ -37,7 +38,7 @@ bool separates(const Bounds& box, int axis, double split) {
 // What is shared out among voxels.
 struct Contents {
   std::vector<CostBox> costs;
-  std::vector<HeldBox> objects;
+  std::vector<std::uint32_t> objects;  // by number
 };
 
 class Cutter {
@@ -47,10 +48,13 @@ class Cutter {
 
   Cutter(double side, std::uint64_t cellObjects) : side_(side), cellObjects_(cellObjects) {}
 
-  // Shares out the bytes of objects: by voxel, which portion each is to have.
-  void balance(std::vector<Portion> portions, double allBytes) {
-    portions_ = std::move(portions);
-    mostBytes_ = kFullest * allBytes / bytesOf(portions_);
+  // Shares out objects: by voxel, which portion each is to have.
+  void balance(std::span<const HeldBox> objects, std::span<const Portion> portions) {
+    objects_ = objects;
+    portions_ = portions;
+    double bytes = 0;
+    for (const HeldBox& object : objects) bytes += object.bytes;
+    mostBytes_ = kFullest * bytes / bytesOf(portions_);
   }
 
   // `first`: the number of the first voxel.
@@ -98,12 +102,13 @@ class Cutter {
   // Where the box of some voxels is cut.
   Cut place(const Bounds& box, std::uint32_t first, std::uint32_t voxels, const Contents& contents) const {
     if (!contents.objects.empty()) {
-      const auto portions = std::span(portions_).subspan(first, voxels);
+      const auto portions = portions_.subspan(first, voxels);
       double bytes = 0;
-      for (const HeldBox& object : contents.objects) bytes += object.bytes;
+      for (const std::uint32_t i : contents.objects) bytes += objects_[i].bytes;
       const double room = mostBytes_ * bytesOf(portions) / bytes;
       const double slack = room > 1 ? std::pow(room, 1 / std::ceil(std::log2(voxels))) : 1;
-      if (const auto cut = balancedCut(box, contents.objects, contents.costs, portions, slack)) return *cut;
+      if (const auto cut = balancedCut(box, objects_, contents.objects, contents.costs, portions, slack))
+        return *cut;
     }
     const std::uint32_t below = voxels / 2;
     const int axis = longestAxis(box.size());
@@ -127,7 +132,7 @@ class Cutter {
   }
 
   // Costs are cut, objects are held on both sides.
-  static std::pair<Contents, Contents> cutContents(Contents contents, int axis, double split) {
+  std::pair<Contents, Contents> cutContents(Contents contents, int axis, double split) const {
     Contents low, high;
     for (const CostBox& c : contents.costs) {
       const double share = shareBelow(c.box, axis, split);
@@ -135,9 +140,9 @@ class Cutter {
       if (share < 1) high.costs.push_back({c.box, c.cost * (1 - share)});
       if (share > 0 && share < 1) low.costs.back().box.high[axis] = high.costs.back().box.low[axis] = split;
     }
-    for (const HeldBox& object : contents.objects) {
-      if (object.box.low[axis] <= split) low.objects.push_back(object);
-      if (object.box.high[axis] >= split) high.objects.push_back(object);
+    for (const std::uint32_t i : contents.objects) {
+      if (objects_[i].box.low[axis] <= split) low.objects.push_back(i);
+      if (objects_[i].box.high[axis] >= split) high.objects.push_back(i);
     }
     return {std::move(low), std::move(high)};
   }
@@ -182,10 +187,11 @@ class Cutter {
     return best;
   }
 
-  double side_;                    // of a cube                                          [world units]
-  std::uint64_t cellObjects_;      // a cell with more is cut, if it can be
-  std::vector<Portion> portions_;  // by voxel, of what is shared out
-  double mostBytes_ = 0;           // of a portion of 1
+  double side_;                // of a cube                                          [world units]
+  std::uint64_t cellObjects_;  // a cell with more is cut, if it can be
+  std::span<const HeldBox> objects_;
+  std::span<const Portion> portions_;  // by voxel, of what is shared out
+  double mostBytes_ = 0;               // of a portion of 1
 };
 
 template <class Id, class IsEnd, class Number>
@@ -253,18 +259,18 @@ BinTree buildBinTree(const Bounds& world, const TreeLimits& limits, DensityGrid&
 }
 
 BinTree buildBalancedTree(const Bounds& world, std::uint32_t cells, DensityGrid& density,
-                          std::vector<HeldBox> objects, std::vector<CostBox> costs,
-                          std::vector<Portion> portions) {
+                          std::span<const HeldBox> objects, std::vector<CostBox> costs,
+                          std::span<const Portion> portions) {
   const TreeLimits limits{.voxels = static_cast<std::uint32_t>(portions.size()), .cells = cells};
-  double bytes = 0;
-  for (const HeldBox& object : objects) bytes += object.bytes;
+  std::vector<std::uint32_t> all(objects.size());
+  std::iota(all.begin(), all.end(), 0u);
   // What cannot be separated is left whole on one side of a plane beside it.
   const Bounds box = cuttable(world);
   const double beside = maxAbs(box.size()) / 16;
   const Vec3 margin{beside, beside, beside};
-  if (auto tree = cutTree({box.low - margin, box.high + margin}, limits, density,
-                          {std::move(costs), std::move(objects)},
-                          [&](Cutter& cutter) { cutter.balance(std::move(portions), bytes); }))
+  if (auto tree =
+          cutTree({box.low - margin, box.high + margin}, limits, density, {std::move(costs), std::move(all)},
+                  [&](Cutter& cutter) { cutter.balance(objects, portions); }))
     return *tree;
   return buildBinTree(world, limits, density);
 }

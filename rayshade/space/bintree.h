@@ -9,6 +9,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "rayshade/base/archive.h"
@@ -79,8 +80,8 @@ BinTree buildBinTree(const Bounds& world, const TreeLimits& limits);
 // The same with each cut where balance.h finds it best: first the bytes of `objects` are shared out, each counted wherever
 // it is held, then `costs`.  `portions`: by voxel.
 BinTree buildBalancedTree(const Bounds& world, std::uint32_t cells, DensityGrid& density,
-                          std::vector<HeldBox> objects, std::vector<CostBox> costs,
-                          std::vector<Portion> portions);
+                          std::span<const HeldBox> objects, std::vector<CostBox> costs,
+                          std::span<const Portion> portions);
 
 inline std::uint32_t cellCount(const BinTree& tree) {
   return static_cast<std::uint32_t>(tree.cellNodes.size());

@@ -8,7 +8,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
@@ -236,100 +235,23 @@ TEST_F(Pvm, InterruptionsEndInOrder) {
   }
 }
 
-// A limit of memory that the host program itself exceeds, then only a task with its share of the scene.
+// A limit of memory that the host program itself exceeds; of tasks: pvm_memory_test.cc.
 TEST_F(Pvm, WhatThereIsNotEnoughMemoryForIsSaid) {
   const std::string scene = scratch("balls.ray");
   ASSERT_EQ(std::system((programDirectory() + "/spd balls 5 >" + scene).c_str()), 0);
-  bool inHost = false, inTask = false;
-  for (int megabytes = 14; megabytes <= 120 && !inTask; megabytes += 2) {
+  bool inHost = false;
+  for (int megabytes = 14; megabytes <= 120; megabytes += 4) {
     const std::string line = "ulimit -v " + std::to_string(1024 * megabytes) + "; exec " +
                              programDirectory() + "/rayshade-host -q -R 9 9 " + scene + " -O " +
                              scratch("picture.png");
     const Finished done = Program({"bash", "-c", line}, scratch("limited"), environment()).wait(kPatience);
     if (done.status == 0) break;
     ASSERT_EQ(done.status, 1) << megabytes << " MB: " << done.errors;
-    const bool byTask = done.errors.find("rayshade-voxel-trace: not enough memory") != std::string::npos;
-    inTask = inTask || (byTask && done.errors.find(" objects (") != std::string::npos &&
-                        done.errors.find("rayshade-host: given up after 3 deaths") != std::string::npos);
     inHost = inHost ||
              done.errors.starts_with("rayshade-host: not enough memory to read the scene: the scene has ");
     expectNoPicture("picture.png");
   }
-  EXPECT_TRUE(inHost && inTask) << inHost << inTask;
-}
-
-// The numbers of a column of --table, of the voxel-trace tasks.
-std::vector<double> columnOf(const std::string& table, const std::string& column) {
-  std::vector<double> numbers;
-  std::istringstream in(table);
-  std::ptrdiff_t position = -1;
-  for (std::string line; std::getline(in, line);) {
-    std::istringstream words(line);
-    const std::vector<std::string> fields{std::istream_iterator<std::string>(words), {}};
-    if (fields.empty() || fields[0] == "#") continue;
-    if (position < 0) {
-      position = std::find(fields.begin(), fields.end(), column) - fields.begin();
-    } else if (fields[0] == "voxel-trace") {
-      numbers.push_back(std::stod(fields.at(static_cast<std::size_t>(position))));
-    }
-  }
-  return numbers;
-}
-
-// A model of about 75 MB: first what tasks take at most while their share comes in and is built, then tasks that may not have
-// more than a quarter of it each.
-TEST_F(Pvm, MemoryDivides) {
-  const std::string scene = scratch("balls.ray");
-  ASSERT_EQ(std::system((programDirectory() + "/spd balls 6 >" + scene).c_str()), 0);
-  const std::string small = "-q -S 1 -R 32 32 --schedule data " + scene;
-  Finished done =
-      startHost("--voxels 4 --table " + scratch("table.tsv") + " " + small, "a.png")->wait(kPatience);
-  ASSERT_EQ(done.status, 0) << done.errors;
-  const std::string table = readText(scratch("table.tsv"));
-  const std::vector<double> model = columnOf(table, "modelBytes"), peak = columnOf(table, "peakMemory"),
-                            objects = columnOf(table, "objects");
-  ASSERT_EQ(model.size(), 4u);
-  double all = 0;
-  for (std::size_t i = 0; i < model.size(); ++i) {
-    EXPECT_LE(peak[i], 1.25 * (model[i] + 12e6)) << i;
-    EXPECT_LE(objects[i], 1.3 * 597872 / 4) << i;
-    all += model[i];
-  }
-  EXPECT_GT(all, 50e6);
-
-  const std::string limited = scratch("limited-tasks");
-  std::filesystem::create_directories(limited);
-  std::ofstream(limited + "/rayshade-voxel-trace")
-      << "#!/bin/sh\nulimit -d " << static_cast<long>(all / 4 / 1024) << "\nexec " << programDirectory()
-      << "/rayshade-voxel-trace \"$@\"\n";
-  std::filesystem::permissions(limited + "/rayshade-voxel-trace", std::filesystem::perms::owner_all);
-  std::filesystem::create_symlink(programDirectory() + "/rayshade-shade", limited + "/rayshade-shade");
-  const Program::Environment tasks{{"RAYSHADE_TASKS", limited}};
-  done = startHost("--voxels 8 " + small, "b.png", tasks)->wait(kPatience);
-  EXPECT_EQ(done.status, 0) << done.errors;
-  EXPECT_EQ(readText(scratch("b.png")), sequential("-S 1 -R 32 32 " + scene, "c.png"));
-  done = startHost("--voxels 8 --split equal " + small, "d.png", tasks)->wait(kPatience);
-  EXPECT_EQ(done.status, 1) << "the limit limits nothing";
-  EXPECT_NE(done.errors.find("not enough memory for this task"), std::string::npos) << done.errors;
-}
-
-TEST_F(Pvm, AHostFileSaysHowMuchMemoryThereIs) {
-  const std::string scene = scratch("balls.ray");
-  ASSERT_EQ(std::system((programDirectory() + "/spd balls 5 >" + scene).c_str()), 0);
-  const auto run = [&](const std::string& hosts, const std::string& options) {
-    std::ofstream(scratch("hosts")) << hosts;
-    return startHost(options + "-q -S 1 -R 9 9 --hosts " + scratch("hosts") + " " + scene, "m.png")
-        ->wait(kPatience);
-  };
-  const std::string tight = "localhost\n# rayshade memory=50 localhost\n";
-  const Finished refused = run(tight, "");
-  expectOneMessage(refused, 1);
-  EXPECT_TRUE(refused.errors.starts_with("rayshade-host: not enough memory for the scene")) << refused.errors;
-  expectNoPicture("m.png");
-  EXPECT_NE(run(tight, "--plan ").output.find("warning: not enough memory"), std::string::npos);
-  const Finished wrong = run("localhost\n\nother sp=0\n", "");
-  expectOneMessage(wrong, 1);
-  EXPECT_EQ(wrong.errors.find("rayshade-host: " + scratch("hosts") + ":3: sp=0"), 0u) << wrong.errors;
+  EXPECT_TRUE(inHost);
 }
 
 TEST_F(Pvm, MissingTaskProgramsAreNamed) {
