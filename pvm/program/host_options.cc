@@ -78,9 +78,7 @@ void declareHostOptions(CLI::App& app, HostProgramOptions& o) {
   app.add_option("--voxels-per-task", o.host.voxelsPerTask, "voxels that each voxel-trace task holds")
       ->check(wholeNumberFrom(1, 64))
       ->group(tasks);
-  app.add_option(
-         "--split", o.split,
-         "voxels balanced by memory, then by predicted cost; or of equal size; or of equal cost alone")
+  app.add_option("--split", o.split, "voxels of equal bytes (balanced), size or predicted cost")
       ->check(CLI::IsMember({"balanced", "equal", "cost"}))
       ->group(tasks);
   app.add_option("--pyramids", o.pyramids, "pyramid-trace tasks (default: by the schedule)")
