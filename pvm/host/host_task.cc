@@ -28,21 +28,21 @@ void check(const Ready& message, const Slave& slave, const HostOptions& options)
 
 }  // namespace
 
-HostTask::HostTask(Machine& machine, SceneReader readScene, const Survey& survey,
-                   const SceneSettings& settings, const HostOptions& options)
+HostTask::HostTask(Machine& machine, SceneReader readScene, Survey survey, const SceneSettings& settings,
+                   const HostOptions& options)
     : machine_(machine),
       readScene_(std::move(readScene)),
       options_(options),
       outbox_(machine),
       roster_(machine, options_),
-      survey_(survey),
+      survey_(std::move(survey)),
       issuing_(outbox_, configuration_, options_) {
   configuration_.settings = settings;
   configuration_.policy = options.policy;
   configuration_.request.seed = options.seed;
   configuration_.threads = options.threads;
   configuration_.loadEvery = options.dynamicShading ? kLoadEvery : 0.0;
-  summary_.objects = survey.objects;
+  summary_.objects = survey_.objects;
   summary_.host.placement = {Role::host, 0, machine.hosts()[0].name, {}};
   summary_.host.task = machine.self();
 }
@@ -87,9 +87,12 @@ void HostTask::divide() {
   }
   Directory& directory = configuration_.directory;
   directory.clusters = std::max(1u, options_.wishes.clusters);
-  const auto voxelTasks = static_cast<std::uint32_t>(roster_.slavesOf(Role::voxelTrace).size());
-  Division division = divideSpace(survey_, configuration_.request, configuration_.settings, options_,
-                                  voxelTasks / directory.clusters);
+  std::vector<Placement> placements;
+  for (const Slave& slave : roster_.slaves()) placements.push_back(slave.placement);
+  const std::vector<TaskPlace> places = placesOfVoxelTasks(machine_.hosts(), placements, options_.wishes);
+  Division division = divideSpace(survey_, configuration_.request, configuration_.settings, options_, places);
+  if (const std::string problem = whatDoesNotFit(division, places); !problem.empty())
+    throw HostError(problem);
   configuration_.tree = std::move(division.tree);
   directory.voxels = std::move(division.owners);
   for (Slave& slave : roster_.slaves()) slave.hasItems = false;

@@ -27,7 +27,7 @@ class HostTask {
   using SceneReader = std::function<void(SceneSink&)>;
 
   // `survey`: of the first frame, or of any when nothing moves.
-  HostTask(Machine& machine, SceneReader readScene, const Survey& survey, const SceneSettings& settings,
+  HostTask(Machine& machine, SceneReader readScene, Survey survey, const SceneSettings& settings,
            const HostOptions& options);
 
   // Renders a frame of the animation; rows from top to bottom.  Throws HostError, and what the scene reader throws.

@@ -47,8 +47,8 @@ Shipping::Shipping(Configure& configuration, std::set<std::uint32_t> targets, Se
       targets_(std::move(targets)),
       send_(std::move(send)),
       stream_(configuration.exposure,
-              [this](const SceneObject& object, const Bounds& bounds,
-                     std::span<const NodeItem* const> nodes) { ship(object, bounds, nodes); }) {
+              [this](const SceneObject& object, const Bounds& bounds, std::span<const NodeItem* const> nodes,
+                     const ObjectStream::Brought&) { ship(object, bounds, nodes); }) {
   configuration.cellBytes.assign(cellCount(configuration.tree), 0);
   configuration.cellBounds.assign(cellCount(configuration.tree), Bounds{});
 }

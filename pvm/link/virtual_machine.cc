@@ -74,7 +74,7 @@ WantedHosts readWantedHosts(const std::string& hostFile) {
     return {{}, "localhost"};  // binds the daemon to 127.0.0.1, out of reach of the network
   std::ifstream in(hostFile);
   if (!in) throw MachineError(hostFile + ": the host file cannot be read");
-  WantedHosts wanted{readHostFile(in), ""};
+  WantedHosts wanted{readHostFile(in, hostFile), ""};
   const auto own = std::find_if(wanted.hosts.begin(), wanted.hosts.end(),
                                 [](const HostLine& h) { return isThisMachine(h.name); });
   if (own != wanted.hosts.end()) {

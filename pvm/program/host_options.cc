@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pvm/program/host_options.h"
 
-#include <unistd.h>
-
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 
 #include "rayshade/program/option_values.h"
 
@@ -30,17 +29,18 @@ CLI::Validator horizon() {
       "");
 }
 
-// Of the objects of a usual scene, with their accelerators.
-constexpr std::uint64_t kBytesPerObject = 200;
-
-std::uint64_t memoryOfMachine() {
-  return static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) *
-         static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+// Of what is known of the hosts, for one task.
+std::uint64_t leastMemory(const HostMemories& memories) {
+  std::uint64_t least = std::numeric_limits<std::uint64_t>::max();
+  for (const auto& [host, memory] : memories)
+    for (const std::uint64_t bytes : {memory.machine, memory.eachTask})
+      if (bytes > 0) least = std::min(least, bytes);
+  return least;
 }
 
 }  // namespace
 
-std::string applySchedule(HostProgramOptions& o, std::uint32_t hosts, std::uint64_t objects) {
+std::string applySchedule(HostProgramOptions& o, std::uint32_t hosts, std::uint64_t bytes) {
   HostOptions& host = o.host;
   DemandPolicy& policy = host.policy;
   std::string why;
@@ -51,7 +51,7 @@ std::string applySchedule(HostProgramOptions& o, std::uint32_t hosts, std::uint6
   if (o.schedule == "auto" && tasksSaid) {
     policy.shadows = ShadowPolicy::automatic;
     why = "rays travel, for tasks were asked for by number";
-  } else if (o.schedule == "auto" && objects * kBytesPerObject <= memoryOfMachine() / 4) {
+  } else if (o.schedule == "auto" && bytes <= leastMemory(host.wishes.memory) / 4) {
     host.wishes.clusters = hosts;
     host.wishes.voxels = 1;
     host.wishes.shades = 0;
@@ -74,7 +74,7 @@ std::string applySchedule(HostProgramOptions& o, std::uint32_t hosts, std::uint6
     policy.shadows = ShadowPolicy::local;
     policy.secondariesTravel = false;
   }
-  host.split = o.split == "cost" ? Split::cost : Split::equal;
+  host.split = o.split == "cost" ? Split::cost : o.split == "equal" ? Split::equal : Split::balanced;
   policy.shadeLocally = o.shading ? *o.shading == "local" : o.schedule != "data";
   // Every cluster has somebody to work for.
   if (host.wishes.pyramids > 0) host.wishes.pyramids = std::max(host.wishes.pyramids, host.wishes.clusters);
@@ -107,8 +107,8 @@ void declareHostOptions(CLI::App& app, HostProgramOptions& o) {
   app.add_option("--voxels-per-task", o.host.voxelsPerTask, "voxels that each voxel-trace task holds")
       ->check(wholeNumberFrom(1, 64))
       ->group(tasks);
-  app.add_option("--split", o.split, "voxels of equal size, or of equal predicted cost")
-      ->check(CLI::IsMember({"equal", "cost"}))
+  app.add_option("--split", o.split, "voxels of equal bytes (balanced), size or predicted cost")
+      ->check(CLI::IsMember({"balanced", "equal", "cost"}))
       ->group(tasks);
   app.add_option("--pyramids", o.pyramids, "pyramid-trace tasks (default: by the schedule)")
       ->check(wholeNumberFrom(0, 4096))

@@ -14,7 +14,7 @@ struct HostProgramOptions {
   MachineOptions machine;
   bool plan = false;
   std::string tableFile;
-  std::string schedule = "auto", split = "equal";
+  std::string schedule = "auto", split = "balanced";
   std::optional<std::uint32_t> pyramids;
   std::optional<std::string> horizon, shadows, shading;
   std::optional<double> cacheMegabytes;
@@ -23,8 +23,9 @@ struct HostProgramOptions {
 
 void declareHostOptions(CLI::App& app, HostProgramOptions& options);
 
-// What the named schedule means for so many objects on so many hosts; what is said in detail counts more.  Answers with the reason
+// What the named schedule means on so many hosts, whose memory is among the wishes, for a model of so many bytes; what is said in
+// detail counts more.  Answers with the reason
 // where the program chose.
-std::string applySchedule(HostProgramOptions& options, std::uint32_t hosts, std::uint64_t objects);
+std::string applySchedule(HostProgramOptions& options, std::uint32_t hosts, std::uint64_t bytes);
 
 }  // namespace rayshade

@@ -15,6 +15,7 @@
 #include "pvm/program/task_table.h"
 #include "pvm/schedule/plan.h"
 #include "rayshade/base/interruption.h"
+#include "rayshade/base/memory.h"
 #include "rayshade/program/command_line.h"
 #include "rayshade/program/frame_files.h"
 #include "rayshade/program/output_file.h"
@@ -48,13 +49,7 @@ bool regularFile(int descriptor) {
 }
 
 // The hosts that there would be; asks a virtual machine that runs, but changes and starts nothing.
-std::vector<HostInfo> plannedHosts(const MachineOptions& options) {
-  std::vector<HostLine> lines;
-  if (!options.hostFile.empty()) {
-    std::ifstream in(options.hostFile);
-    if (!in) throw MachineError(options.hostFile + ": the host file cannot be read");
-    lines = readHostFile(in);
-  }
+std::vector<HostInfo> plannedHosts(const std::vector<HostLine>& lines) {
   std::vector<HostInfo> running;
   if (lookForMachine() == MachineState::alive) {
     const VirtualMachine machine({});
@@ -63,6 +58,24 @@ std::vector<HostInfo> plannedHosts(const MachineOptions& options) {
   char name[256] = "localhost";
   if (!lines.empty()) gethostname(name, sizeof name - 1);
   return hostsAfterJoining(running, lines, isThisMachine, name);
+}
+
+std::vector<HostLine> hostLines(const MachineOptions& options) {
+  if (options.hostFile.empty()) return {};
+  std::ifstream in(options.hostFile);
+  if (!in) throw MachineError(options.hostFile + ": the host file cannot be read");
+  return readHostFile(in, options.hostFile);
+}
+
+// The memory of hosts as the host file says it; of this machine, if nothing is said, what it has, and what a process may take.
+HostMemories memoriesOf(const std::vector<HostLine>& lines, const std::string& ownName) {
+  HostMemories memories;
+  for (const HostLine& line : lines)
+    if (line.memory > 0) memories[isThisMachine(line.name) ? ownName : line.name].machine = line.memory;
+  HostMemory& own = memories[ownName];
+  if (own.machine == 0) own.machine = memoryOfMachine();
+  own.eachTask = memoryLimit();
+  return memories;
 }
 
 // What needs memory, for the message when there is not enough.
@@ -86,11 +99,14 @@ int run(HostProgramOptions& options, Need& need) {
     throw SceneError(sceneName(options.render) + ": error: there is nothing to be rendered");
   const View view = *viewOf(head.camera, head.picture);
   const SceneWork work = sceneWork(scenePlan(pass.features.features(), head), survey.objects);
+  const std::vector<HostLine> lines = hostLines(options.machine);
   if (options.plan) {
-    const std::vector<HostInfo> hosts = plannedHosts(options.machine);
-    const std::string why = applySchedule(options, static_cast<std::uint32_t>(hosts.size()), survey.objects);
+    const std::vector<HostInfo> hosts = plannedHosts(lines);
+    options.host.wishes.memory = memoriesOf(lines, hosts[0].name);
+    const std::string why = applySchedule(options, static_cast<std::uint32_t>(hosts.size()), survey.bytes);
     if (!why.empty()) std::printf("schedule        auto: %s\n", why.c_str());
-    std::fputs(describePlan(hosts, options.host, survey, {view, head.picture}, head.settings, work).c_str(),
+    std::fputs(describePlan(hosts, options.host, std::move(survey), {view, head.picture}, head.settings, work)
+                   .c_str(),
                stdout);
     return 0;
   }
@@ -114,11 +130,14 @@ int run(HostProgramOptions& options, Need& need) {
   options.host.seed = options.render.seed;
   options.host.killAfter = options.patience;
   options.host.pingAfter = options.patience / 3;
-  const std::size_t hosts = link.hosts().size();
-  applySchedule(options, static_cast<std::uint32_t>(hosts), survey.objects);
+  const std::vector<HostInfo> present = link.hosts();
+  const std::size_t hosts = present.size();
+  options.host.wishes.memory = memoriesOf(lines, present[0].name);
+  applySchedule(options, static_cast<std::uint32_t>(hosts), survey.bytes);
   options.host.wishes = neededTasks(work, options.host, hosts).wishes;
   HostTask host(
-      link, [&](SceneSink& sink) { parseScene(again, sink); }, survey, head.settings, options.host);
+      link, [&](SceneSink& sink) { parseScene(again, sink); }, std::move(survey), head.settings,
+      options.host);
   const std::int32_t everyRows = rowsBetweenLines(options.render, head);
   need.what = "for the picture";
   Picture sum{area.width, area.height, {}};

@@ -20,6 +20,7 @@
 #include "pvm/shade/shade_task.h"
 #include "pvm/trace/pyramid_task.h"
 #include "pvm/trace/voxel_task.h"
+#include "rayshade/base/memory.h"
 #include "rayshade/program/run.h"
 #include "rayshade/program/version.h"
 
@@ -44,6 +45,7 @@ int startedByHand(std::string_view name) {
 template <class Task>
 int runSlave(std::string_view name) {
   if (!wasSpawned()) return startedByHand(name);
+  keepMemoryTight();
   PvmLink link;
   if (link.parent() == kNobody) return startedByHand(name);  // from the pvm console
   link.watch(link.parent());                                 // nobody works for the dead

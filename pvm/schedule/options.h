@@ -11,14 +11,15 @@ namespace rayshade {
 
 // Into what voxels space is cut.
 enum class Split : std::uint8_t {
-  equal,  // of equal size (Reinhard & Jansen, section 3)
-  cost,   // of equal predicted work
+  equal,     // of equal size (Reinhard & Jansen, section 3)
+  cost,      // of equal predicted work
+  balanced,  // of equal bytes, then of equal predicted work, with little that is held twice
 };
 
 struct HostOptions {
   Wishes wishes;
   std::uint32_t voxelsPerTask = 1;
-  Split split = Split::equal;
+  Split split = Split::balanced;
   std::uint32_t window = 0;         // samples on their way; 0: by the number of tasks
   std::uint32_t cells = 0;          // of the bin-tree, about; 0: by the size of the scene
   std::uint32_t tilePixels = 1024;  // of a pyramid, about

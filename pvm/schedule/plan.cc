@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cinttypes>
+#include <cmath>
 #include <cstdarg>
 
 namespace rayshade {
@@ -32,6 +33,21 @@ std::string describe(const Horizon& horizon) {
       break;
   }
   return "as long as fetching a cell pays";
+}
+
+double megabytes(std::uint64_t bytes) { return 1e-6 * static_cast<double>(bytes); }
+
+// What stays whole: a task that needs a part of it holds all of it.
+void addWhole(std::string& text, const Survey& survey) {
+  const char* const names[] = {"CSG operations", "named objects", "height fields", "images"};
+  const char* lead = "held whole     ";
+  for (std::size_t kind = 0; kind < survey.whole.size(); ++kind) {
+    const WholeThings& things = survey.whole[kind];
+    if (things.count == 0) continue;
+    add(text, "%s %" PRIu64 " %s of %.3f MB, the largest %.3f MB\n", lead, things.count, names[kind],
+        megabytes(things.bytes), megabytes(things.largest));
+    lead = "               ";
+  }
 }
 
 // Who traces what, by the policy and by what the scene has.
@@ -74,13 +90,13 @@ std::vector<HostInfo> hostsAfterJoining(std::vector<HostInfo> running, const std
   if (running.empty()) {
     const auto own =
         std::find_if(lines.begin(), lines.end(), [&](const HostLine& l) { return isThisMachine(l.name); });
-    running.push_back(own == lines.end() ? HostInfo{ownName} : HostInfo{own->name, speedOf(*own)});
+    running.push_back(own == lines.end() ? HostInfo{ownName} : HostInfo{own->name, own->speed});
   }
   for (const HostLine& line : lines) {
     const bool known =
         isThisMachine(line.name) ||
         std::any_of(running.begin(), running.end(), [&](const HostInfo& h) { return h.name == line.name; });
-    if (!known) running.push_back({line.name, speedOf(line)});
+    if (!known) running.push_back({line.name, line.speed});
   }
   return running;
 }
@@ -93,34 +109,38 @@ std::string describePlan(const std::vector<HostInfo>& hosts, HostOptions options
   const auto voxelTasks = static_cast<std::uint32_t>(std::count_if(
       placements.begin(), placements.end(), [](const Placement& p) { return p.role == Role::voxelTrace; }));
   const std::uint32_t clusters = std::max(1u, options.wishes.clusters), perCluster = voxelTasks / clusters;
-  const Division division = divideSpace(survey, request, settings, options, perCluster);
-  std::vector<std::uint64_t> objects(perCluster);  // by task of a cluster: whose centres lie in its voxels
-  std::vector<VoxelId> at;
-  for (const DensityGrid::Cube& cube : survey.density.cubes()) {
-    const Vec3 centre = Vec3{cube.x + 0.5, cube.y + 0.5, cube.z + 0.5} * survey.density.side();
-    at.clear();
-    voxelsTouching(division.tree, {centre, centre}, at);
-    objects[division.owners[number(at.back())]] += cube.count;
-  }
+  const std::vector<TaskPlace> places = placesOfVoxelTasks(hosts, placements, options.wishes);
+  const Division division = divideSpace(survey, request, settings, options, places);
 
   std::string text;
-  add(text, "%" PRIu64 " objects in %u voxels of equal %s and %u cells; %u cluster%s\n", survey.objects,
-      voxelCount(division.tree), options.split == Split::cost ? "predicted work" : "size",
+  add(text, "%" PRIu64 " objects of %.1f MB in %u voxels of equal %s and %u cells; %u cluster%s\n",
+      survey.objects, megabytes(survey.bytes), voxelCount(division.tree),
+      options.split == Split::balanced ? "bytes"
+      : options.split == Split::cost   ? "predicted work"
+                                       : "size",
       cellCount(division.tree), clusters, clusters > 1 ? "s" : "");
   addPolicy(text, options, settings);
+  addWhole(text, survey);
 
-  add(text, "\n%-21s %-16s %9s  %s\n", "task", "host", "objects", "why there");
-  add(text, "%-21s %-16s %9s  %s\n", "host 0", hosts[0].name.c_str(), "-", "where it is started");
+  add(text, "\n%-21s %-16s %9s %8s  %s\n", "task", "host", "objects", "MB", "why there");
+  add(text, "%-21s %-16s %9s %8s  %s\n", "host 0", hosts[0].name.c_str(), "-", "-", "where it is started");
   for (const Placement& p : placements) {
     const std::string name = std::string(programName(p.role)).substr(9) + " " + std::to_string(p.index);
-    const std::string held =
-        p.role == Role::voxelTrace ? "~" + std::to_string(objects[p.index % perCluster]) : "-";
-    add(text, "%-21s %-16s %9s  %s\n", name.c_str(), p.host.c_str(), held.c_str(), p.reason.c_str());
+    std::string objects = "-", bytes = "-";
+    if (p.role == Role::voxelTrace) {
+      const Division::Held& held = division.expected[p.index % perCluster];
+      objects = "~" + std::to_string(std::llround(held.objects));
+      bytes.clear();
+      add(bytes, "~%.1f", 1e-6 * held.bytes);
+    }
+    add(text, "%-21s %-16s %9s %8s  %s\n", name.c_str(), p.host.c_str(), objects.c_str(), bytes.c_str(),
+        p.reason.c_str());
   }
   for (const std::string& less : needed.why) add(text, "%s\n", less.c_str());
 
   // Work in parts of a voxel task's, for a machine of usual speed.
-  add(text, "\n%-21s %-16s %9s  %s\n", "host", "speed", "tasks", "expected work for its speed");
+  add(text, "\n%-21s %-16s %9s %9s  %s\n", "host", "speed", "memory MB", "tasks",
+      "expected work for its speed");
   for (std::size_t i = 0; i < hosts.size(); ++i) {
     double work = i == 0 ? expectedWork(Role::host) : 0;
     int tasks = i == 0 ? 1 : 0;
@@ -129,9 +149,14 @@ std::string describePlan(const std::vector<HostInfo>& hosts, HostOptions options
       work += expectedWork(p.role);
       ++tasks;
     }
-    add(text, "%-21s %-16d %9d  %.2f\n", hosts[i].name.c_str(), hosts[i].speed, tasks,
+    const auto known = options.wishes.memory.find(hosts[i].name);
+    const bool said = known != options.wishes.memory.end() && known->second.machine > 0;
+    const std::string memory = said ? std::to_string(known->second.machine / 1'000'000) : "?";
+    add(text, "%-21s %-16d %9s %9d  %.2f\n", hosts[i].name.c_str(), hosts[i].speed, memory.c_str(), tasks,
         work * HostInfo{}.speed / std::max(hosts[i].speed, 1));
   }
+  if (const std::string problem = whatDoesNotFit(division, places); !problem.empty())
+    add(text, "\nwarning: %s\n", problem.c_str());
   return text;
 }
 

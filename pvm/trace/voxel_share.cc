@@ -31,7 +31,9 @@ void VoxelShare::prepare(const Exposure& exposure, const BinTree& tree, std::spa
     voxelsTouching(tree, model_->boundsOf(object), touched);
     // Every object belongs to the first voxel that it touches; there it counts.
     if (!touched.empty() && owners[static_cast<std::size_t>(touched.front())] == self) ++owned_;
-    for (VoxelId voxel : touched) members[static_cast<std::size_t>(voxel)].push_back(object);
+    for (VoxelId voxel : touched)
+      if (owners[static_cast<std::size_t>(voxel)] == self)
+        members[static_cast<std::size_t>(voxel)].push_back(object);
   }
   regions_.clear();
   for (std::size_t voxel = 0; voxel < members.size(); ++voxel)

@@ -14,6 +14,7 @@
 #pragma once
 
 #include <span>
+#include <utility>
 
 #include "rayshade/accel/bvh_build.h"
 #include "rayshade/accel/bvh_ray.h"
@@ -50,8 +51,11 @@ class Bvh {
   Bvh() = default;
   // `items` in any space, at most kMostItems; the caller has padded them.
   explicit Bvh(std::span<const Bounds> items) : tree_(buildBvh(items)) {}
+  Bvh(std::size_t items, const BoundsOf& boundsOf) : tree_(buildBvh(items, boundsOf)) {}
 
   std::span<const std::uint32_t> order() const { return tree_.order; }
+  // The order for him who lays out his items; it is not kept.
+  std::vector<std::uint32_t> takeOrder() { return std::exchange(tree_.order, {}); }
   std::size_t bytes() const {
     return sizeof *this + tree_.nodes.capacity() * sizeof(BvhNode) +
            tree_.order.capacity() * sizeof(std::uint32_t);

@@ -34,6 +34,32 @@ struct Piece {
   }
 };
 
+// Nodes while their number is not known: a vector that grows is there twice.
+class GrowingNodes {
+ public:
+  std::uint32_t add() {
+    if (size_ % kPart == 0) parts_.emplace_back();
+    parts_.back().emplace_back();
+    return size_++;
+  }
+  BvhNode& operator[](std::uint32_t i) { return parts_[i / kPart][i % kPart]; }
+
+  std::vector<BvhNode> take() {
+    std::vector<BvhNode> all;
+    all.reserve(size_);
+    for (std::vector<BvhNode>& part : parts_) {
+      all.insert(all.end(), part.begin(), part.end());
+      std::vector<BvhNode>().swap(part);
+    }
+    return all;
+  }
+
+ private:
+  static constexpr std::uint32_t kPart = 4096;
+  std::vector<std::vector<BvhNode>> parts_;
+  std::uint32_t size_ = 0;
+};
+
 struct Range {
   std::uint32_t first, count;
   int depth;           // below the root
@@ -42,12 +68,15 @@ struct Range {
 
 class Builder {
  public:
-  Builder(std::vector<Piece> pieces, std::vector<std::uint32_t>& order, std::vector<BvhNode>& nodes)
-      : pieces_(std::move(pieces)), order_(order), nodes_(nodes) {}
+  Builder(std::vector<Piece> pieces, std::vector<std::uint32_t>& order)
+      : pieces_(std::move(pieces)), order_(order) {}
 
-  ChildRef build() {
-    nodes_.reserve(pieces_.size() / 4 + 1);
-    return build(measure(0, static_cast<std::uint32_t>(pieces_.size()), 0));
+  ChildRef build() { return build(measure(0, static_cast<std::uint32_t>(pieces_.size()), 0)); }
+
+  // What was built.
+  std::vector<BvhNode> takeNodes() {
+    std::vector<Piece>().swap(pieces_);
+    return nodes_.take();
   }
 
  private:
@@ -81,8 +110,7 @@ class Builder {
       children[widest] = measure(opened.first, low, opened.depth + 1);
       children[count++] = measure(opened.first + low, opened.count - low, opened.depth + 1);
     }
-    const std::uint32_t here = static_cast<std::uint32_t>(nodes_.size());
-    nodes_.emplace_back();
+    const std::uint32_t here = nodes_.add();
     constexpr float kNowhere = std::numeric_limits<float>::infinity();
     for (int axis = 0; axis < 3; ++axis)
       for (int child = 0; child < 4; ++child) {
@@ -172,35 +200,39 @@ class Builder {
 
   std::vector<Piece> pieces_;
   std::vector<std::uint32_t>& order_;
-  std::vector<BvhNode>& nodes_;
+  GrowingNodes nodes_;
 };
 
 }  // namespace
 
 BvhTree buildBvh(std::span<const Bounds> items) {
-  if (items.size() > kMostItems) throw std::length_error("too many objects in one place");
-  enum Kind { kInTree, kUnbounded, kEmpty };
-  const auto kind = [&](std::uint32_t i) {
-    const Bounds& b = items[i];
-    if (b.low.x > b.high.x || b.low.y > b.high.y || b.low.z > b.high.z) return kEmpty;
-    return b.finite() && maxAbs(b.low) <= margins::kLargest && maxAbs(b.high) <= margins::kLargest
-               ? kInTree
-               : kUnbounded;
-  };
+  return buildBvh(items.size(), [&](std::uint32_t item) { return items[item]; });
+}
+
+BvhTree buildBvh(std::size_t items, const BoundsOf& boundsOf) {
+  if (items > kMostItems) throw std::length_error("too many objects in one place");
   BvhTree tree;
   std::vector<std::uint32_t>& order = tree.order;
-  order.resize(items.size());
-  std::iota(order.begin(), order.end(), 0u);
-  const auto unbounded =
-      std::stable_partition(order.begin(), order.end(), [&](std::uint32_t i) { return kind(i) == kInTree; });
-  const auto empty =
-      std::stable_partition(unbounded, order.end(), [&](std::uint32_t i) { return kind(i) == kUnbounded; });
-  tree.inTree = static_cast<std::uint32_t>(unbounded - order.begin());
-  tree.unbounded = static_cast<std::uint32_t>(empty - unbounded);
+  order.reserve(items);
+  std::vector<std::uint32_t> unbounded, empty;
+  Bounds box;
+  for (std::uint32_t i = 0; i < items; ++i) {
+    const Bounds b = boundsOf(i);
+    if (b.low.x > b.high.x || b.low.y > b.high.y || b.low.z > b.high.z) {
+      empty.push_back(i);
+    } else if (b.finite() && maxAbs(b.low) <= margins::kLargest && maxAbs(b.high) <= margins::kLargest) {
+      order.push_back(i);
+      box = join(box, b);
+    } else {
+      unbounded.push_back(i);
+    }
+  }
+  tree.inTree = static_cast<std::uint32_t>(order.size());
+  tree.unbounded = static_cast<std::uint32_t>(unbounded.size());
+  order.insert(order.end(), unbounded.begin(), unbounded.end());
+  order.insert(order.end(), empty.begin(), empty.end());
   if (tree.inTree == 0) return tree;
 
-  Bounds box;
-  for (auto i = order.begin(); i != unbounded; ++i) box = join(box, items[*i]);
   tree.centre = box.centre();
   const double half = std::max(
       {maxAbs(box.high - tree.centre), maxAbs(tree.centre - box.low), maxAbs(tree.centre) * 0x1p-60});
@@ -211,15 +243,16 @@ BvhTree buildBvh(std::span<const Bounds> items) {
   std::vector<Piece> pieces(tree.inTree);
   Piece root = Piece::empty();
   for (std::uint32_t i = 0; i < tree.inTree; ++i) {
-    const Bounds& item = items[order[i]];
+    const Bounds item = boundsOf(order[i]);
     const Vec3 low = (item.low - tree.centre) * tree.scale, high = (item.high - tree.centre) * tree.scale;
     pieces[i] = {Float4{floatBelow(low.x), floatBelow(low.y), floatBelow(low.z), 0},
                  Float4{floatAbove(high.x), floatAbove(high.y), floatAbove(high.z), 0}};
     root.add(pieces[i]);
   }
   tree.box = {{root.low[0], root.low[1], root.low[2]}, {root.high[0], root.high[1], root.high[2]}};
-  tree.root = Builder(std::move(pieces), order, tree.nodes).build();
-  tree.nodes.shrink_to_fit();
+  Builder builder(std::move(pieces), order);
+  tree.root = builder.build();
+  tree.nodes = builder.takeNodes();
   return tree;
 }
 

@@ -3,6 +3,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <functional>
 #include <span>
 
 #include "rayshade/accel/bvh_tree.h"
@@ -12,5 +13,9 @@ namespace rayshade {
 // `items` in any space, at most so many; the caller has padded them.
 inline constexpr std::size_t kMostItems = std::size_t{1} << kFirstBits;
 BvhTree buildBvh(std::span<const Bounds> items);
+
+// The same when the bounds are not lying anywhere: each is asked for twice, which is less than to keep them.
+using BoundsOf = std::function<Bounds(std::uint32_t item)>;
+BvhTree buildBvh(std::size_t items, const BoundsOf& boundsOf);
 
 }  // namespace rayshade

@@ -65,20 +65,11 @@ Bounds Model::placedBoundsOf(const Bounds& inside, NodeIndex index) const {
 }
 
 Region Model::regionOf(std::vector<ObjectIndex> objects) const {
-  std::vector<Bounds> bounds;
-  bounds.reserve(objects.size());
-  std::vector<ObjectIndex> kept;
-  kept.reserve(objects.size());
-  for (ObjectIndex object : objects) {
-    const Bounds b = boundsOf(object);
-    if (b.empty()) continue;
-    bounds.push_back(b);
-    kept.push_back(object);
-  }
+  std::erase_if(objects, [&](ObjectIndex object) { return boundsOf(object).empty(); });
   Region region;
-  region.bvh = Bvh(bounds);
-  region.objects.reserve(kept.size());
-  for (std::uint32_t item : region.bvh.order()) region.objects.push_back(target(kept[item]));
+  region.bvh = Bvh(objects.size(), [&](std::uint32_t item) { return boundsOf(objects[item]); });
+  region.objects.reserve(objects.size());
+  for (std::uint32_t item : region.bvh.takeOrder()) region.objects.push_back(target(objects[item]));
   return region;
 }
 

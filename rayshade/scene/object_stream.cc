@@ -2,6 +2,9 @@
 #include "rayshade/scene/object_stream.h"
 
 #include <algorithm>
+#include <utility>
+
+#include "rayshade/scene/held_bytes.h"
 
 namespace rayshade {
 namespace {
@@ -112,19 +115,36 @@ std::vector<const NodeItem*> ObjectStream::nodesOf(NodeId id, const NodeItem* ow
   return chain;
 }
 
+// An aggregate has a smaller number than what is in it, so a node with a larger number than all before is new.
+ObjectStream::Brought ObjectStream::broughtBy(const SceneObject& object,
+                                              std::span<const NodeItem* const> chain) {
+  Brought brought{heldBytes(object), 0};
+  for (const NodeItem* node : chain)
+    if (number(node->id) > broughtNode_) brought.bytes += heldBytes(node->node);
+  if (!chain.empty()) broughtNode_ = std::max(broughtNode_, number(chain.front()->id));
+  DefinitionId used = kWorld;
+  if (const Instance* instance = std::get_if<Instance>(&object.body)) used = instance->definition;
+  if (const Csg* csg = std::get_if<Csg>(&object.body)) used = csg->operands;
+  if (const auto found = definitions_.find(number(used)); used != kWorld && found != definitions_.end())
+    brought.definition = std::exchange(found->second.bytes, 0);
+  return brought;
+}
+
 void ObjectStream::hand(const SceneObject& object, const NodeItem* own) {
   const auto chain = nodesOf(object.node, own);
   const bool moves =
       std::any_of(chain.begin(), chain.end(), [](const NodeItem* f) { return f->node.transforms.moves(); });
   const Bounds bounds = placedBounds(
       ownBounds(object), moves, [&](const Moment& moment) { return composed(chain, moment); }, exposure_);
+  const Brought brought = broughtBy(object, chain);
   if (object.container == kWorld) {
     ++objects_;
     std::vector<const NodeItem*> outermostFirst(chain.rbegin(), chain.rend());
-    consumer_(object, bounds, outermostFirst);
+    consumer_(object, bounds, outermostFirst, brought);
   } else {
-    Bounds& whole = definitions_[number(object.container)].bounds;
-    whole = join(whole, bounds);
+    SpooledDefinition& definition = definitions_[number(object.container)];
+    definition.bounds = join(definition.bounds, bounds);
+    definition.bytes += brought.bytes + brought.definition;
   }
 }
 

@@ -17,10 +17,15 @@ namespace rayshade {
 
 class ObjectStream : public SceneSink {
  public:
+  // What comes into a task's memory with an object that nothing before it brought along.
+  struct Brought {
+    std::uint64_t bytes = 0;       // the object itself and its nodes
+    std::uint64_t definition = 0;  // and all that is in the definition that it uses
+  };
   // Takes an object of the world with its bounds in world space.  `nodes` are those between it and the world, in the
   // order of their numbers.
   using Consumer = std::function<void(const SceneObject& object, const Bounds& bounds,
-                                      std::span<const NodeItem* const> nodes)>;
+                                      std::span<const NodeItem* const> nodes, const Brought& brought)>;
 
   ObjectStream(const Exposure& exposure, Consumer consumer);
 
@@ -40,6 +45,7 @@ class ObjectStream : public SceneSink {
   struct SpooledDefinition {
     std::vector<std::pair<std::uint64_t, std::uint64_t>> pieces;  // offset and size in definitionSpool_
     Bounds bounds;
+    std::uint64_t bytes = 0;  // until an object has brought it along
   };
   struct Statement {  // the top-level statement that is being read
     Spool spool;
@@ -53,6 +59,7 @@ class ObjectStream : public SceneSink {
   Bounds ownBounds(const SceneObject& object) const;
   std::vector<const NodeItem*> nodesOf(NodeId id, const NodeItem* own) const;
   void hand(const SceneObject& object, const NodeItem* own);
+  Brought broughtBy(const SceneObject& object, std::span<const NodeItem* const> chain);
 
   Exposure exposure_;
   Consumer consumer_;
@@ -61,6 +68,7 @@ class ObjectStream : public SceneSink {
   Spool definitionSpool_;
   Statement statement_;
   std::uint64_t objects_ = 0;
+  std::uint32_t broughtNode_ = 0;  // the largest number of those that objects hang on
   Bytes scratch_;
 };
 

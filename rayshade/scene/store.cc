@@ -3,10 +3,19 @@
 
 #include <algorithm>
 
+#include "rayshade/scene/held_bytes.h"
+
 namespace rayshade {
 namespace {
 
-// Whole shapes of one kind: what they hold outside of themselves is theirs to know and small beside this.
+// Grows by a quarter: what is copied while a list grows is there twice.
+template <class T>
+T& append(std::vector<T>& list, T item) {
+  if (list.size() == list.capacity()) list.reserve(list.size() + list.size() / 4 + 16);
+  return list.emplace_back(std::move(item));
+}
+
+// Shapes without what they hold outside of themselves.
 template <class Vectors>
 std::size_t bytesOf(const Vectors& vectors) {
   return std::apply(
@@ -63,10 +72,10 @@ std::size_t StoredNodes::add(NodeId id, SceneNode node) {
   // An aggregate gets its number before its members do: a parent with a larger number would be a circle.
   const bool circle = number(node.parent) >= number(id);
   if (circle) node.parent = kRootNode;
-  nodes_.emplace_back();
-  nodes_.back().id = id;
-  nodes_.back().node = std::move(node);
-  nodes_.back().parent = kNone;  // until place()
+  PlacedNode& added = append(nodes_, {});
+  added.id = id;
+  added.node = std::move(node);
+  added.parent = kNone;  // until place()
   return circle;
 }
 
@@ -74,6 +83,7 @@ std::size_t StoredNodes::place() {
   std::size_t mended = 0;
   for (PlacedNode& node : nodes_)
     if (node.parent == kNone) mended += place(node);
+  nodes_.shrink_to_fit();
   return mended;
 }
 
@@ -107,13 +117,13 @@ std::size_t StoredNodes::place(PlacedNode& node) {
 void SceneStore::object(SceneObject object) {
   PlacedObject placed;
   placed.id = object.id;
-  if (const AnyShape* shape = std::get_if<AnyShape>(&object.body)) {
+  if (AnyShape* shape = std::get_if<AnyShape>(&object.body)) {
     placed.kind = BodyKind{static_cast<std::uint8_t>(shape->index())};
     std::visit(
-        [&](const auto& s) {
+        [&](auto& s) {
           auto& list = std::get<std::vector<std::decay_t<decltype(s)>>>(shapes_);
           placed.body = static_cast<std::uint32_t>(list.size());
-          list.push_back(s);
+          append(list, std::move(s));
         },
         *shape);
   } else if (const Instance* instance = std::get_if<Instance>(&object.body)) {
@@ -127,9 +137,9 @@ void SceneStore::object(SceneObject object) {
   }
   auto [members, isNew] = members_.try_emplace(number(object.container));
   if (isNew) definitions_.push_back(object.container);
-  members->second.push_back(static_cast<ObjectIndex>(objects_.size()));
-  objects_.push_back(placed);
-  unplaced_.push_back({object.node, object.surface});
+  append(members->second, static_cast<ObjectIndex>(objects_.size()));
+  append(objects_, placed);
+  append(unplaced_, {object.node, object.surface});
 }
 
 void SceneStore::prepare() {
@@ -137,6 +147,9 @@ void SceneStore::prepare() {
   const std::size_t placed = objects_.size() - unplaced_.size();
   for (std::size_t i = 0; i < unplaced_.size(); ++i) place(objects_[placed + i], unplaced_[i]);
   std::vector<Unplaced>().swap(unplaced_);
+  objects_.shrink_to_fit();
+  std::apply([](auto&... list) { (list.shrink_to_fit(), ...); }, shapes_);
+  for (auto& [id, list] : members_) list.shrink_to_fit();
 }
 
 void SceneStore::place(PlacedObject& object, const Unplaced& where) {
@@ -166,9 +179,15 @@ std::vector<DefinitionId> SceneStore::definitions() const {
   return sorted;
 }
 
+std::size_t StoredNodes::bytes() const {
+  std::size_t total = nodes_.capacity() * sizeof(PlacedNode) + index_.size() * kTableEntryBytes;
+  for (const PlacedNode& node : nodes_) total += bytesOutside(node.node);
+  return total;
+}
+
 std::size_t SceneStore::bytes() const {
-  std::size_t total =
-      objects_.capacity() * sizeof(PlacedObject) + nodes_.bytes() + surfaces_.bytes() + bytesOf(shapes_);
+  std::size_t total = objects_.capacity() * sizeof(PlacedObject) + nodes_.bytes() + surfaces_.bytes() +
+                      bytesOf(shapes_) + bytesOutside(shapes_);
   for (const auto& [id, list] : members_) total += list.capacity() * sizeof(ObjectIndex);
   return total;
 }

@@ -75,7 +75,7 @@ class StoredNodes {
 
   std::optional<NodeIndex> find(NodeId id) const;
   const PlacedNode& operator[](NodeIndex index) const { return nodes_[index]; }
-  std::size_t bytes() const { return nodes_.capacity() * sizeof(PlacedNode); }
+  std::size_t bytes() const;
 
  private:
   std::size_t place(PlacedNode& node);

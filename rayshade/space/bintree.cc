@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+
+#include "rayshade/space/balance.h"
 
 namespace rayshade {
 
@@ -32,6 +35,12 @@ bool separates(const Bounds& box, int axis, double split) {
   return box.low[axis] < split && split < box.high[axis];
 }
 
+// What is shared out among voxels.
+struct Contents {
+  std::vector<CostBox> costs;
+  std::vector<std::uint32_t> objects;  // by number
+};
+
 class Cutter {
  public:
   // Cubes of the density grid, as a range that is reordered while cutting.
@@ -39,24 +48,31 @@ class Cutter {
 
   Cutter(double side, std::uint64_t cellObjects) : side_(side), cellObjects_(cellObjects) {}
 
-  void cutVoxels(const Bounds& box, std::uint32_t voxels, Cubes cubes, std::vector<CostBox> costs,
+  // Shares out objects: by voxel, which portion each is to have.
+  void balance(std::span<const HeldBox> objects, std::span<const Portion> portions) {
+    objects_ = objects;
+    portions_ = portions;
+    double bytes = 0;
+    for (const HeldBox& object : objects) bytes += object.bytes;
+    mostBytes_ = kFullest * bytes / bytesOf(portions_);
+  }
+
+  // `first`: the number of the first voxel.
+  void cutVoxels(const Bounds& box, std::uint32_t first, std::uint32_t voxels, Cubes cubes, Contents contents,
                  int depth) {
     if (voxels == 1) {
       cutCells(box, cubes, depth, kVoxelFlag);
       return;
     }
-    const int axis = longestAxis(box.size());
-    const std::uint32_t below = voxels / 2;
-    const double share = static_cast<double>(below) / voxels;
-    const double split = splitAt(box, axis, share, costs);
+    const auto [axis, split, below] = place(box, first, voxels, contents);
     const auto [low, high] = cut(box, axis, split, 0);
     const auto middle = std::partition(cubes.begin(), cubes.end(), [&](const DensityGrid::Cube& cube) {
       return (index(cube, axis) + 0.5) * side_ < split;
     });
     const auto count = static_cast<std::size_t>(middle - cubes.begin());
-    auto [lowCosts, highCosts] = cutCosts(std::move(costs), axis, split);
-    cutVoxels(low, below, cubes.first(count), std::move(lowCosts), depth + 1);
-    cutVoxels(high, voxels - below, cubes.subspan(count), std::move(highCosts), depth + 1);
+    auto [lowContents, highContents] = cutContents(std::move(contents), axis, split);
+    cutVoxels(low, first, below, cubes.first(count), std::move(lowContents), depth + 1);
+    cutVoxels(high, first + below, voxels - below, cubes.subspan(count), std::move(highContents), depth + 1);
   }
 
   TreeCode code;
@@ -72,6 +88,31 @@ class Cutter {
     Bounds low = box, high = box;
     low.high[axis] = high.low[axis] = split;
     return {low, high};
+  }
+
+  // What has been held twice further up leaves less for the cuts below: each may take its part of what is left.
+  static constexpr double kFullest = 1.2;  // bytes of a voxel, in portions
+
+  static double bytesOf(std::span<const Portion> portions) {
+    double bytes = 0;
+    for (const Portion& portion : portions) bytes += portion.bytes;
+    return bytes;
+  }
+
+  // Where the box of some voxels is cut.
+  Cut place(const Bounds& box, std::uint32_t first, std::uint32_t voxels, const Contents& contents) const {
+    if (!contents.objects.empty()) {
+      const auto portions = portions_.subspan(first, voxels);
+      double bytes = 0;
+      for (const std::uint32_t i : contents.objects) bytes += objects_[i].bytes;
+      const double room = mostBytes_ * bytesOf(portions) / bytes;
+      const double slack = room > 1 ? std::pow(room, 1 / std::ceil(std::log2(voxels))) : 1;
+      if (const auto cut = balancedCut(box, objects_, contents.objects, contents.costs, portions, slack))
+        return *cut;
+    }
+    const std::uint32_t below = voxels / 2;
+    const int axis = longestAxis(box.size());
+    return {axis, splitAt(box, axis, static_cast<double>(below) / voxels, contents.costs), below};
   }
 
   // Where the box is cut so that `share` of the costs, or of the length when there are none, is on the low side.
@@ -90,20 +131,18 @@ class Cutter {
     return low + length * from;
   }
 
-  static double shareBelow(const Bounds& box, int axis, double split) {
-    if (split >= box.high[axis]) return 1;
-    if (split <= box.low[axis]) return 0;
-    return (split - box.low[axis]) / (box.high[axis] - box.low[axis]);
-  }
-
-  static std::pair<std::vector<CostBox>, std::vector<CostBox>> cutCosts(std::vector<CostBox> costs, int axis,
-                                                                        double split) {
-    std::vector<CostBox> low, high;
-    for (const CostBox& c : costs) {
+  // Costs are cut, objects are held on both sides.
+  std::pair<Contents, Contents> cutContents(Contents contents, int axis, double split) const {
+    Contents low, high;
+    for (const CostBox& c : contents.costs) {
       const double share = shareBelow(c.box, axis, split);
-      if (share > 0) low.push_back({c.box, c.cost * share});
-      if (share < 1) high.push_back({c.box, c.cost * (1 - share)});
-      if (share > 0 && share < 1) low.back().box.high[axis] = high.back().box.low[axis] = split;
+      if (share > 0) low.costs.push_back({c.box, c.cost * share});
+      if (share < 1) high.costs.push_back({c.box, c.cost * (1 - share)});
+      if (share > 0 && share < 1) low.costs.back().box.high[axis] = high.costs.back().box.low[axis] = split;
+    }
+    for (const std::uint32_t i : contents.objects) {
+      if (objects_[i].box.low[axis] <= split) low.objects.push_back(i);
+      if (objects_[i].box.high[axis] >= split) high.objects.push_back(i);
     }
     return {std::move(low), std::move(high)};
   }
@@ -150,6 +189,9 @@ class Cutter {
 
   double side_;                // of a cube                                          [world units]
   std::uint64_t cellObjects_;  // a cell with more is cut, if it can be
+  std::span<const HeldBox> objects_;
+  std::span<const Portion> portions_;  // by voxel, of what is shared out
+  double mostBytes_ = 0;               // of a portion of 1
 };
 
 template <class Id, class IsEnd, class Number>
@@ -186,24 +228,51 @@ Bounds boundsOfNode(const BinTree& tree, std::uint32_t wanted) {
 
 }  // namespace
 
-BinTree buildBinTree(const Bounds& world, const TreeLimits& limits, DensityGrid& density,
-                     std::vector<CostBox> costs) {
+namespace {
+
+// Everything but how the voxels are cut, which `prepare` tells the cutter.
+template <class Prepare>
+std::optional<BinTree> cutTree(const Bounds& world, const TreeLimits& limits, DensityGrid& density,
+                               Contents contents, Prepare prepare) {
   const std::uint32_t voxels = std::clamp(limits.voxels, 1u, kMaxVoxels);
   const std::uint32_t cells = std::clamp(limits.cells, voxels, kMaxCells);
   std::vector<DensityGrid::Cube> cubes;
   std::uint64_t objects = 0;
   if (cells > voxels) cubes.assign(density.cubes().begin(), density.cubes().end());
   for (const DensityGrid::Cube& cube : cubes) objects += cube.count;
-  const std::uint64_t cellObjects = (objects + cells - 1) / cells;
-  if (!costs.empty()) {
-    Cutter cutter(density.side(), cellObjects);
-    cutter.cutVoxels(cuttable(world), voxels, cubes, std::move(costs), 0);
-    // Costs in one point may ask for cuts that doubles cannot tell apart.
-    if (std::optional<BinTree> tree = treeFrom(cutter.code)) return *tree;
-  }
-  Cutter cutter(density.side(), cellObjects);
-  cutter.cutVoxels(cuttable(world), voxels, cubes, {}, 0);
-  return treeFrom(cutter.code).value_or(BinTree{});
+  Cutter cutter(density.side(), (objects + cells - 1) / cells);
+  prepare(cutter);
+  cutter.cutVoxels(world, 0, voxels, cubes, std::move(contents), 0);
+  return treeFrom(cutter.code);
+}
+
+}  // namespace
+
+BinTree buildBinTree(const Bounds& world, const TreeLimits& limits, DensityGrid& density,
+                     std::vector<CostBox> costs) {
+  const auto asItIs = [](Cutter&) {};
+  const Bounds box = cuttable(world);
+  // Costs in one point may ask for cuts that doubles cannot tell apart.
+  if (!costs.empty())
+    if (auto tree = cutTree(box, limits, density, {std::move(costs), {}}, asItIs)) return *tree;
+  return cutTree(box, limits, density, {}, asItIs).value_or(BinTree{});
+}
+
+BinTree buildBalancedTree(const Bounds& world, std::uint32_t cells, DensityGrid& density,
+                          std::span<const HeldBox> objects, std::vector<CostBox> costs,
+                          std::span<const Portion> portions) {
+  const TreeLimits limits{.voxels = static_cast<std::uint32_t>(portions.size()), .cells = cells};
+  std::vector<std::uint32_t> all(objects.size());
+  std::iota(all.begin(), all.end(), 0u);
+  // What cannot be separated is left whole on one side of a plane beside it.
+  const Bounds box = cuttable(world);
+  const double beside = maxAbs(box.size()) / 16;
+  const Vec3 margin{beside, beside, beside};
+  if (auto tree =
+          cutTree({box.low - margin, box.high + margin}, limits, density, {std::move(costs), std::move(all)},
+                  [&](Cutter& cutter) { cutter.balance(objects, portions); }))
+    return *tree;
+  return buildBinTree(world, limits, density);
 }
 
 BinTree buildBinTree(const Bounds& world, const TreeLimits& limits) {

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "rayshade/base/archive.h"
@@ -56,6 +57,16 @@ struct CostBox {
   double cost = 0;
 };
 
+// An object, or several alike, as it is held by every task whose voxels it touches.
+struct HeldBox {
+  Bounds box;  // padded
+  double bytes = 0, objects = 1;
+};
+// What a voxel is to have, in proportion to the others; both above 0.
+struct Portion {
+  double bytes = 1, work = 1;
+};
+
 // Cuts the box `world` into voxels of equal size, each time across the longest side, in proportion to the
 // voxels on each side; a world that is flat is cut along its other sides, one that is a point or empty or
 // infinite is taken as a small box.  Then cuts each voxel into cells that hold about the same number of
@@ -65,6 +76,12 @@ struct CostBox {
 BinTree buildBinTree(const Bounds& world, const TreeLimits& limits, DensityGrid& density,
                      std::vector<CostBox> costs = {});
 BinTree buildBinTree(const Bounds& world, const TreeLimits& limits);
+
+// The same with each cut where balance.h finds it best: first the bytes of `objects` are shared out, each counted wherever
+// it is held, then `costs`.  `portions`: by voxel.
+BinTree buildBalancedTree(const Bounds& world, std::uint32_t cells, DensityGrid& density,
+                          std::span<const HeldBox> objects, std::vector<CostBox> costs,
+                          std::span<const Portion> portions);
 
 inline std::uint32_t cellCount(const BinTree& tree) {
   return static_cast<std::uint32_t>(tree.cellNodes.size());

@@ -2,28 +2,26 @@
 #include "rayshade/space/bounds_sample.h"
 
 #include <algorithm>
+#include <numeric>
+#include <ranges>
 
 #include "rayshade/base/random.h"
 
 namespace rayshade {
-namespace {
 
-double surfaceArea(const Bounds& b) {
+double BoundsSample::surfaceArea(const Bounds& b) {
   const Vec3 s = b.size();
   return 2 * (s.x * s.y + s.y * s.z + s.z * s.x);
 }
 
-}  // namespace
-
-void BoundsSample::add(const Bounds& bounds) {
+void BoundsSample::add(const Bounds& bounds, double size) {
   const std::uint64_t number = count_++;
-  const double area = bounds.empty() || !bounds.finite() ? 0 : surfaceArea(bounds);
-  if (!(area > 0 && area < kInfinity)) return;
+  if (bounds.empty() || !bounds.finite() || !(size > 0 && size < kInfinity)) return;
   const double u = static_cast<double>((mixBits(number) >> 11) + 1) * 0x1p-53;
   const auto higher = [](const Kept& a, const Kept& b) {
     return a.priority != b.priority ? a.priority > b.priority : a.number < b.number;
   };
-  const Kept candidate{area / u, number, bounds};
+  const Kept candidate{size / u, number, bounds, size};
   if (kept_.size() == most_) {
     if (!higher(candidate, kept_.front())) {
       threshold_ = std::max(threshold_, candidate.priority);
@@ -38,11 +36,14 @@ void BoundsSample::add(const Bounds& bounds) {
 }
 
 std::vector<BoundsSample::Box> BoundsSample::boxes() const {
-  std::vector<Kept> inOrder = kept_;
-  std::sort(inOrder.begin(), inOrder.end(), [](const Kept& a, const Kept& b) { return a.number < b.number; });
+  std::vector<std::uint32_t> order(kept_.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::ranges::sort(order, {}, [&](std::uint32_t i) { return kept_[i].number; });
   std::vector<Box> boxes;
-  for (const Kept& k : inOrder)
-    boxes.push_back({k.bounds, std::max(1.0, threshold_ / surfaceArea(k.bounds))});
+  boxes.reserve(kept_.size());
+  for (const Kept& k :
+       order | std::views::transform([&](std::uint32_t i) -> const Kept& { return kept_[i]; }))
+    boxes.push_back({k.bounds, std::max(1.0, threshold_ / k.size), k.size});
   return boxes;
 }
 

@@ -79,7 +79,8 @@ void march(const ExtinctionGrid& haze, const Vec3& origin, const Vec3& direction
     const Vec3& along = haze.extinction[cell];
     const double extinction =
         along.x * std::abs(direction.x) + along.y * std::abs(direction.y) + along.z * std::abs(direction.z);
-    const double stopped = strength * -std::expm1(-extinction * std::max(0.0, exit - t));
+    // Most cells are empty.
+    const double stopped = extinction > 0 ? strength * -std::expm1(-extinction * std::max(0.0, exit - t)) : 0;
     f(cell, strength, stopped);
     strength -= stopped;
     t = exit;

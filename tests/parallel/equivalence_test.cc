@@ -26,7 +26,7 @@ struct Splitting {
 std::ostream& operator<<(std::ostream& out, const Splitting& s) {
   return out << "--voxels " << s.voxelTasks << " --voxels-per-task " << s.voxelsPerTask << " --shades "
              << s.shades << " --window " << s.window << " --pyramids " << s.pyramids << " --clusters "
-             << s.clusters << (s.by == Split::cost ? " --split cost" : "") << ", delivery seed "
+             << s.clusters << " --split " << static_cast<int>(s.by) << ", delivery seed "
              << s.delivery;
 }
 
@@ -40,7 +40,7 @@ Splitting randomSplit(std::uint64_t seed) {
           .delivery = random.bits(),
           .pyramids = from(0, 2),
           .clusters = from(1, 2),
-          .by = random.pick({Split::equal, Split::cost})};
+          .by = random.pick({Split::equal, Split::cost, Split::balanced})};
 }
 
 RenderedByTasks renderSplit(const Job& job, const Splitting& split) {

@@ -144,11 +144,46 @@ TEST_F(MachineOfPvm, AHostFileThatIsNotThereIsAnError) {
 
 TEST(HostFile, DefaultsStandBeforeTheOptionsOfAHost) {
   std::istringstream in("# comment\nalpha sp=2\n* ep=/build wd=/tmp\n\nbeta sp=3\n& gamma\n  delta\n");
-  const auto hosts = readHostFile(in);
+  const auto hosts = readHostFile(in, "hosts");
   ASSERT_EQ(hosts.size(), 3u);
   EXPECT_EQ(hosts[0].name + "|" + hosts[0].options, "alpha|sp=2");
   EXPECT_EQ(hosts[1].name + "|" + hosts[1].options, "beta|ep=/build wd=/tmp sp=3");
   EXPECT_EQ(hosts[2].name + "|" + hosts[2].options, "delta|ep=/build wd=/tmp");
+}
+
+std::vector<HostLine> hostsOf(const std::string& text) {
+  std::istringstream in(text);
+  return readHostFile(in, "hosts");
+}
+std::string problemOf(const std::string& text) {
+  try {
+    hostsOf(text);
+  } catch (const MachineError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(HostFile, SpeedsThatPvmWouldNotTakeAreNamedWithTheirLine) {
+  EXPECT_EQ(problemOf("alpha sp=1\nbeta sp=1000000\n"), "");
+  for (const char* speed : {"0", "-3", "fast", "1000001", "", "10x", "99999999999999999999"})
+    EXPECT_EQ(problemOf("alpha\nbeta ep=/x sp=" + std::string(speed) + "\n"),
+              "hosts:2: sp=" + std::string(speed) + ": a whole number from 1 to 1000000 is expected");
+  EXPECT_TRUE(problemOf("* sp=0\nalpha sp=7\n").starts_with("hosts:1: sp=0"));
+  EXPECT_EQ(hostsOf("* sp=500\nalpha\nbeta sp=7 sp=8\n")[0].speed, 500);
+  EXPECT_EQ(hostsOf("* sp=500\nalpha\nbeta sp=7 sp=8\n")[1].speed, 8);
+}
+
+TEST(HostFile, ACommentLineOfOursTellsMemory) {
+  const auto hosts = hostsOf("# rayshade memory=64 beta\n# rayshade memory=8\nalpha\nbeta\ngamma\n");
+  EXPECT_EQ(hosts[0].memory, 8'000'000u);
+  EXPECT_EQ(hosts[1].memory, 64'000'000u);
+  EXPECT_EQ(hosts[2].memory, 8'000'000u);
+  EXPECT_EQ(hostsOf("# memory=64\n#rayshade\n# rayshade is fine\nalpha\n")[0].memory, 0u);
+  EXPECT_EQ(problemOf("alpha\n# rayshade memory=64 beta\n"),
+            "hosts:2: no line of the file has the host beta");
+  EXPECT_EQ(problemOf("alpha\n# rayshade memory=much\n"),
+            "hosts:2: memory=much: a whole number from 1 to 1000000000 is expected");
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ HostOptions randomSchedule(std::uint64_t seed) {
   host.cells = random.pick({1u, 8u, 60u, 400u});
   host.tilePixels = random.pick({1u, 16u, 256u});
   host.dynamicShading = random.oneIn(4);
-  host.split = random.pick({Split::equal, Split::cost});
+  host.split = random.pick({Split::equal, Split::cost, Split::balanced});
   DemandPolicy& policy = host.policy;
   policy.shadows = random.pick({ShadowPolicy::forward, ShadowPolicy::local, ShadowPolicy::automatic});
   policy.secondariesTravel = !random.oneIn(3);

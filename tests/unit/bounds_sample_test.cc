@@ -56,6 +56,23 @@ TEST(BoundsSample, LargeObjectsAreAlwaysIn) {
   EXPECT_EQ(found, 1);
 }
 
+TEST(BoundsSample, BytesMayCountInPlaceOfAreas) {
+  BoundsSample sample(1000);
+  double left = 0, leftKept = 0;
+  const auto bytes = [](std::uint64_t i) { return 100.0 + static_cast<double>(i % 7) * 50; };
+  for (std::uint64_t i = 0; i < 50'000; ++i) {
+    sample.add(box(i), bytes(i));
+    if (box(i).low.x < 0.3) left += bytes(i);
+  }
+  for (const BoundsSample::Box& b : sample.boxes())
+    if (b.bounds.low.x < 0.3) leftKept += b.weight * b.size;
+  EXPECT_NEAR(leftKept / left, 1, 0.15);
+  BoundsSample points;
+  points.add({{1, 2, 3}, {1, 2, 3}}, 5);
+  ASSERT_EQ(points.boxes().size(), 1u);
+  EXPECT_EQ(points.boxes()[0].size, 5);
+}
+
 TEST(BoundsSample, PointsAndBoundsThatAreNoBoxAreLeftOut) {
   BoundsSample sample;
   sample.add(Bounds{});

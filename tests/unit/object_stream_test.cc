@@ -47,7 +47,7 @@ class Tee final : public SceneSink {
 struct Both {
   explicit Both(const std::string& text, const Exposure& exposure = {})
       : stream(exposure, [this](const SceneObject& object, const Bounds& bounds,
-                                std::span<const NodeItem* const> nodes) {
+                                std::span<const NodeItem* const> nodes, const ObjectStream::Brought&) {
           Placed& one = placed.emplace_back(Placed{object, bounds, {}});
           for (const NodeItem* node : nodes) one.nodes.push_back(*node);
         }) {

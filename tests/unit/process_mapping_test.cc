@@ -125,7 +125,24 @@ TEST(ProcessMapping, OfALostHostNothingIsLeft) {
 
 TEST(ProcessMapping, ASpeedOfNothingIsNoTrap) {
   const auto placements = mapProcesses({{"a", 0}, {"b", -5}, {"c", 1000}}, {.voxels = 4});
-  EXPECT_EQ(perHost(placements, Role::voxelTrace), (std::map<std::string, int>{{"c", 4}}));
+  EXPECT_EQ(perHost(placements, Role::voxelTrace)["c"], 2);
+}
+
+TEST(ProcessMapping, AFastHostDoesNotGetTheWholeModel) {
+  const std::vector<HostInfo> hosts{{"slow", 1000}, {"fast", 4000}};
+  EXPECT_EQ(perHost(mapProcesses(hosts, {.voxels = 2}), Role::voxelTrace),
+            (std::map<std::string, int>{{"slow", 1}, {"fast", 1}}));
+  EXPECT_EQ(perHost(mapProcesses(hosts, {.voxels = 4}), Role::voxelTrace)["fast"], 3);
+}
+
+TEST(ProcessMapping, HostsWithMoreMemoryGetMoreVoxelTasks) {
+  Wishes wishes{.voxels = 8};
+  wishes.memory = {{"host0", {kHostTaskBytes + 100'000'000, 0}}, {"host1", {700'000'000, 0}}};
+  const auto count = perHost(mapProcesses(equalHosts(2), wishes), Role::voxelTrace);
+  EXPECT_EQ(count, (std::map<std::string, int>{{"host0", 1}, {"host1", 7}}));
+  // Room for the host task is left on its own machine.
+  wishes.memory = {{"host0", {kHostTaskBytes + 1, 0}}, {"host1", {kHostTaskBytes, 0}}};
+  EXPECT_EQ(perHost(mapProcesses(equalHosts(2), wishes), Role::voxelTrace)["host0"], 1);
 }
 
 }  // namespace

@@ -16,10 +16,10 @@ PYRAMIDS = 1024  # in a picture, whatever its size: so many of 256 samples make 
 
 
 def tasks_for(count, schedule, shades=None):
-    """A voxel task and, unless all is data driven, a pyramid task on each processor."""
+    """A voxel task and, unless all is data driven, a pyramid task on each processor; equal voxels, as in the paper."""
     pyramids = 0 if schedule == "data" else count
     shades = shades or max(1, count // 4)
-    return f"--schedule {schedule} --voxels {count} --pyramids {pyramids} --shades {shades}"
+    return f"--schedule {schedule} --voxels {count} --pyramids {pyramids} --shades {shades} --split equal"
 
 
 def fetching(lab, scene, part=CACHE):
