@@ -16,6 +16,9 @@ class HostsOnly final : public Machine {
   std::optional<LinkEvent> wait(double) override { return std::nullopt; }
   void watch(TaskId) override {}
   double now() const override { return 0; }
+  unsigned cores() const override { return 1; }
+  void useThreads(unsigned) override {}
+  void run(Job) override {}
   std::vector<HostInfo> hosts() override { return ++asked, there; }
   Spawned spawn(Role role, const std::string&) override {
     started.push_back(role);
