@@ -28,6 +28,7 @@ HostOptions randomSchedule(std::uint64_t seed) {
   host.cells = random.pick({1u, 8u, 60u, 400u});
   host.tilePixels = random.pick({1u, 16u, 256u});
   host.dynamicShading = random.oneIn(4);
+  host.threads = random.pick({0u, 1u, 3u});
   host.split = random.pick({Split::equal, Split::cost, Split::balanced});
   DemandPolicy& policy = host.policy;
   policy.shadows = random.pick({ShadowPolicy::forward, ShadowPolicy::local, ShadowPolicy::automatic});
@@ -55,7 +56,7 @@ TEST(Schedules, AnyPolicyAnyHorizonAnyCacheGivesTheSameBits) {
     for (std::uint64_t trial = 0; trial < 3; ++trial) {
       SCOPED_TRACE("trial " + std::to_string(trial));
       const RenderedByTasks got =
-          renderByTasks(job, randomSchedule(7 * seed + trial), {.seed = seed + 1000 * trial});
+          renderByTasks(job, randomSchedule(7 * seed + trial), {.seed = seed + 1000 * trial, .cores = 2});
       ASSERT_EQ(difference(got.frames, expected.frames), "");
       ASSERT_EQ(got.summary.successions, 0);
       for (const TaskSummary& task : got.summary.tasks) {
