@@ -15,8 +15,6 @@ constexpr double kBytesPerLook = kBytesPerTravel / 4;
 constexpr double kExpectedUses = 64;
 // Experience is trusted so far, both ways.
 constexpr double kMostWorth = 16;
-// Before any cell has come: bytes in the cache for a byte on the wire.
-constexpr double kPerWireByte = 4;
 
 }  // namespace
 
@@ -27,7 +25,7 @@ void CellFetcher::begin() {
   queue_.clear();
   known_.assign(at_.cellBytes.size(), 0);
   debts_.assign(at_.cellBytes.size(), 0);
-  perWireByte_ = kPerWireByte;
+  perWireByte_ = kCacheBytesPerWireByte;  // until cells have come
   cache_.begin(at_.policy.cacheBytes);
 }
 
@@ -41,11 +39,11 @@ double CellFetcher::room() const {
 }
 
 double CellFetcher::price(double bytes, bool eager, double room) const {
-  if (bytes > static_cast<double>(cache_.mostBytes())) return kInfinity;
+  const auto most = static_cast<double>(cache_.mostOfCells());
+  if (bytes > most) return kInfinity;
   if (bytes <= room) return eager ? 0 : bytes / kExpectedUses;
   // What is coming must not be thrown out before it is used.
-  if (comingBytes_ > 0 && comingBytes_ + bytes > static_cast<double>(cache_.mostBytes()) / 2)
-    return kInfinity;
+  if (comingBytes_ > 0 && comingBytes_ + bytes > most / 2) return kInfinity;
   const ObjectCache::Use& left = cache_.ofThoseThatLeft();
   const double worth = left.bytes > 0 ? kBytesPerLook * left.rays / left.bytes : 1;
   return bytes / std::clamp(worth, 1 / kMostWorth, kMostWorth);

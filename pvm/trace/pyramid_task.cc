@@ -135,6 +135,7 @@ bool PyramidTask::work(double until) {
 }
 
 bool PyramidTask::traceSome() {
+  unit_.space.settle();
   bool any = !rays_.empty();
   if (any) {
     traceWaiting(rays_);

@@ -8,18 +8,42 @@ void TaskSpace::begin(std::span<const Bounds> cellBounds, TaskId self) {
   if (share_ != nullptr)
     for (std::uint32_t voxel = 0; voxel < held.size(); ++voxel)
       held[voxel] = at_.ownerOf(VoxelId{voxel}) == self;
+  cellBytesOfOthers_ = 0;
+  for (std::uint32_t cell = 0; cell < cellCount(at_.tree); ++cell)
+    if (!held[static_cast<std::size_t>(voxelOfCell(at_.tree, CellId{cell}))])
+      cellBytesOfOthers_ += at_.cellBytes[cell];
+  whole_.clear();
+  if (share_ != nullptr) whole_.push_back({&share_->model(), &share_->region()});
   map_ = BlockMap(at_.tree, cellBounds, std::move(held), share_ == nullptr || at_.shadowsFetch());
 }
 
 RegionRef TaskSpace::region(std::uint32_t block, std::size_t rays, RayKind kind) {
-  const BlockMap::Block& b = map_.blocks()[block];
-  if (b.held) return {&share_->model(), share_->region(b.voxel)};
-  const RegionRef cached = cache_.find(b.cell, rays);
+  const RegionRef cached = cache_.find(map_.blocks()[block].cell, rays);
   if (kind == RayKind::shadow) {
     shadowLookups_.lookups += rays;
     if (cached.region != nullptr) shadowLookups_.hits += rays;
   }
   return cached;
+}
+
+std::span<const RegionRef> TaskSpace::whole(std::size_t rays, RayKind kind) {
+  if (cache_.anyJoined()) {
+    cache_.countJoined(rays);
+    if (kind == RayKind::shadow) {
+      shadowLookups_.lookups += rays;
+      shadowLookups_.hits += rays;
+    }
+  }
+  return whole_;
+}
+
+void TaskSpace::settle() {
+  if (!map_.fetches() || !cache_.join(kCacheBytesPerWireByte * cellBytesOfOthers_, at_.exposure)) return;
+  std::vector<bool> joined;
+  for (const BlockMap::Block& block : map_.blocks()) joined.push_back(cache_.isJoined(block.cell));
+  map_.join(joined);
+  whole_.resize(share_ != nullptr ? 1 : 0);
+  whole_.push_back({&cache_.joinedModel(), &cache_.joinedRegion()});
 }
 
 }  // namespace rayshade

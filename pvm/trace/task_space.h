@@ -20,11 +20,12 @@ class TaskSpace final : public LocalSpace {
 
   const BinTree& tree() const override { return at_.tree; }
   const BlockMap& blocks() const override { return map_; }
+  std::span<const RegionRef> whole(std::size_t rays, RayKind kind) override;
   RegionRef region(std::uint32_t block, std::size_t rays, RayKind kind) override;
-  bool isLocal(std::uint32_t block) const override {
-    const BlockMap::Block& b = map_.blocks()[block];
-    return b.held || cache_.contains(b.cell);
-  }
+  bool isLocal(std::uint32_t block) const override { return cache_.contains(map_.blocks()[block].cell); }
+
+  // Between bundles: makes one accelerator of the cells that have come, if it is time.
+  void settle();
 
   // Look-ups in the cache by shadow rays, a part of all.
   const CacheCounts& shadowLookups() const { return shadowLookups_; }
@@ -34,7 +35,9 @@ class TaskSpace final : public LocalSpace {
   const VoxelShare* share_;
   ObjectCache& cache_;
   BlockMap map_;
+  std::vector<RegionRef> whole_;  // own voxels, then joined cells
   CacheCounts shadowLookups_;
+  double cellBytesOfOthers_ = 0;  // on the wire
 };
 
 }  // namespace rayshade

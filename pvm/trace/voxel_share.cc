@@ -8,7 +8,8 @@ namespace rayshade {
 void VoxelShare::forget() {
   model_.emplace();
   itemsAreNew_ = true;
-  regions_.clear();
+  region_ = {};
+  held_.clear();
 }
 
 void VoxelShare::take(std::vector<Item>&& items) {
@@ -19,56 +20,45 @@ void VoxelShare::take(std::vector<Item>&& items) {
 void VoxelShare::prepare(const Exposure& exposure, const BinTree& tree, std::span<const std::uint32_t> owners,
                          std::uint32_t self) {
   // The host never sends another tree without items, but a message may come from anybody.
-  if (!itemsAreNew_ && regions_.size() == voxelCount(tree)) return;
+  if (!itemsAreNew_ && held_.size() == voxelCount(tree)) return;
   itemsAreNew_ = false;
   model_->prepare(exposure);
   cellObjects_.clear();
-  std::vector<std::vector<ObjectIndex>> members(voxelCount(tree));
+  held_.clear();
+  for (std::uint32_t voxel = 0; voxel < voxelCount(tree); ++voxel) held_.push_back(owners[voxel] == self);
+  const auto objects = model_->store().objectsOf(kWorld);
   std::vector<VoxelId> touched;
   owned_ = 0;
-  for (ObjectIndex object : model_->store().objectsOf(kWorld)) {
+  for (ObjectIndex object : objects) {
     touched.clear();
     voxelsTouching(tree, model_->boundsOf(object), touched);
     // Every object belongs to the first voxel that it touches; there it counts.
-    if (!touched.empty() && owners[static_cast<std::size_t>(touched.front())] == self) ++owned_;
-    for (VoxelId voxel : touched)
-      if (owners[static_cast<std::size_t>(voxel)] == self)
-        members[static_cast<std::size_t>(voxel)].push_back(object);
+    if (!touched.empty() && held_[static_cast<std::size_t>(touched.front())]) ++owned_;
   }
-  regions_.clear();
-  for (std::size_t voxel = 0; voxel < members.size(); ++voxel)
-    regions_.push_back(owners[voxel] == self
-                           ? std::make_unique<Region>(model_->regionOf(std::move(members[voxel])))
-                           : nullptr);
+  region_ = {};
+  region_ = model_->regionOf({objects.begin(), objects.end()});
 }
 
-// Which objects lie in which cell of a voxel is found out when the first one is asked for.
+// Which objects lie in which cell is found out when the first one is asked for.
 std::optional<std::vector<Item>> VoxelShare::itemsOf(CellId cell, const BinTree& tree) {
-  const VoxelId voxel = voxelOfCell(tree, cell);
-  const Region* held = region(voxel);
-  if (held == nullptr) return std::nullopt;
-  const auto key = static_cast<std::uint32_t>(cell);
-  if (!cellObjects_.contains(key)) {
+  if (held_.size() != voxelCount(tree) || !held_[static_cast<std::size_t>(voxelOfCell(tree, cell))])
+    return std::nullopt;
+  if (cellObjects_.empty()) {
+    cellObjects_.resize(cellCount(tree));
     std::vector<CellId> cells;
-    for (const Target& target : held->objects) {
+    for (ObjectIndex object : model_->store().objectsOf(kWorld)) {
       cells.clear();
-      cellsTouching(tree, model_->boundsOf(target.object), cells);
+      cellsTouching(tree, model_->boundsOf(object), cells);
       for (CellId touched : cells)
-        if (voxelOfCell(tree, touched) == voxel)
-          cellObjects_[static_cast<std::uint32_t>(touched)].push_back(target.object);
+        if (held_[static_cast<std::size_t>(voxelOfCell(tree, touched))])
+          cellObjects_[static_cast<std::size_t>(touched)].push_back(object);
     }
-    cellObjects_[key];
   }
   Extract extract(model_->store());
-  for (ObjectIndex object : cellObjects_[key]) extract.add(object);
+  for (ObjectIndex object : cellObjects_[static_cast<std::size_t>(cell)]) extract.add(object);
   return std::move(extract.items);
 }
 
-std::uint64_t VoxelShare::bytes() const {
-  std::uint64_t bytes = model_->bytes();
-  for (const auto& region : regions_)
-    if (region) bytes += region->bytes();
-  return bytes;
-}
+std::uint64_t VoxelShare::bytes() const { return model_->bytes() + region_.bytes(); }
 
 }  // namespace rayshade

@@ -4,8 +4,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <map>
-#include <memory>
+#include <optional>
 
 #include "rayshade/intersect/model.h"
 #include "rayshade/space/bintree.h"
@@ -23,8 +22,8 @@ class VoxelShare {
                std::uint32_t self);
 
   const Model& model() const { return *model_; }
-  // Null: not held here.
-  const Region* region(VoxelId voxel) const { return regions_[static_cast<std::size_t>(voxel)].get(); }
+  // All of it, each object once, whatever voxels it lies in.
+  const Region& region() const { return region_; }
   // The objects of a cell of a held voxel with all that they refer to; nothing if it is not held.
   std::optional<std::vector<Item>> itemsOf(CellId cell, const BinTree& tree);
 
@@ -38,9 +37,10 @@ class VoxelShare {
  private:
   std::optional<Model> model_{std::in_place};
   bool itemsAreNew_ = false;
-  std::vector<std::unique_ptr<Region>> regions_;  // by voxel; null: not held
+  Region region_;
+  std::vector<bool> held_;  // by voxel
   std::uint64_t owned_ = 0;
-  std::map<std::uint32_t, std::vector<ObjectIndex>> cellObjects_;  // made when somebody asks for a cell
+  std::vector<std::vector<ObjectIndex>> cellObjects_;  // by cell; made when somebody asks for one
 };
 
 }  // namespace rayshade

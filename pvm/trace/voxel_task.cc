@@ -145,6 +145,7 @@ bool VoxelTask::work(double until) {
 // False: there is nothing that could be done now.
 bool VoxelTask::traceSome() {
   jobs_.send(host_);
+  unit_.space.settle();
   bool any = true;
   if (shadows_.bundles() > 0) {
     traceShadows();

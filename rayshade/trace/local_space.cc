@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rayshade/trace/local_space.h"
 
+#include <algorithm>
+
 #include "rayshade/accel/bvh_bundle.h"
 #include "rayshade/space/walk.h"
 
@@ -44,7 +46,6 @@ bool mayMeet(const Bounds& box, const LocalRay& ray, double from, double to) {
 
 BlockMap BlockMap::everything() {
   BlockMap map;
-  map.blocks_.push_back({VoxelId{0}, CellId{0}, true});
   map.held_.push_back(true);
   return map;
 }
@@ -57,23 +58,32 @@ BlockMap::BlockMap(const BinTree& tree, std::span<const Bounds> cells, std::vect
   std::vector<Bounds> ofOthers;
   for (std::uint32_t cell = 0; cell < cellCount(tree); ++cell) {
     const Bounds& box = cells[cell];
-    if (box.empty()) continue;
     const VoxelId voxel = voxelOfCell(tree, CellId{cell});
-    const bool isHeld = this->held(voxel);
-    allHeld_ = allHeld_ && isHeld;
-    if (!isHeld && !fetches) {
+    if (box.empty() || this->held(voxel)) continue;
+    allHeld_ = false;
+    if (!fetches) {
       ofOthers.push_back(box);
-    } else if (isHeld && !blocks_.empty() && blocks_.back().held && blocks_.back().voxel == voxel) {
-      boxes_.back() = join(boxes_.back(), box);  // the cells of a voxel are numbered one after the other
-    } else {
-      if (!isHeld) blockOfCell_[cell] = static_cast<std::uint32_t>(blocks_.size());
-      boxes_.push_back(box);
-      blocks_.push_back({voxel, CellId{cell}, isHeld});
+      continue;
     }
+    blockOfCell_[cell] = static_cast<std::uint32_t>(blocks_.size());
+    boxes_.push_back(box);
+    blocks_.push_back({voxel, CellId{cell}});
   }
-  bvh_ = Bvh(boxes_);
+  join(std::vector<bool>(blocks_.size()));
   others_ = Bvh(ofOthers);
-  if (!fetches && blocks_.size() == 1) onlyVoxel_ = boundsOf(tree, blocks_[0].voxel);
+  if (!fetches && std::count(held_.begin(), held_.end(), true) == 1)
+    onlyVoxel_ = boundsOf(
+        tree,
+        VoxelId{static_cast<std::uint32_t>(std::find(held_.begin(), held_.end(), true) - held_.begin())});
+}
+
+void BlockMap::join(const std::vector<bool>& joined) {
+  std::vector<std::uint32_t> single;
+  for (std::uint32_t block = 0; block < blocks_.size(); ++block)
+    if (!joined[block]) single.push_back(block);
+  bvh_ = Bvh(single.size(), [&](std::uint32_t item) { return boxes_[single[item]]; });
+  inOrder_ = bvh_.takeOrder();
+  for (std::uint32_t& block : inOrder_) block = single[block];
 }
 
 RaySet BlockMap::reachingOthers(std::span<const Segment> segments, std::span<const double> begin) const {

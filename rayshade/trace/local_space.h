@@ -1,8 +1,9 @@
 // Space as one tracer knows it: what is local, and where there is something that is not.
 //
-// Space is cut into blocks: voxels that are held here, and cells of other tasks' voxels that may be fetched.  Of every block the
-// box around what is in it is known; its objects are local (a RegionRef) or not.  A task that fetches nothing knows of the
-// voxels of others only where there is anything in them.  One process is the case of a single block that is local.
+// Most of what is local lies in one accelerator, or a few, that every ray is taken through: the objects of the voxels that are held
+// here, cells that were joined.  The rest of space is cut into blocks, cells of other tasks' voxels that may be fetched.  Of every
+// block the box around what is in it is known; its objects are local (a RegionRef) or not.  A task that fetches nothing knows of the
+// voxels of others only where there is anything in them.  One process is the case of a single region and no block.
 // A ray is traced through all that is local at once (trace_rays.h); whether that resolves it is asked here: could anything that
 // is not local lie before what was found?  If so, the ray's walk says where it goes on.
 //
@@ -40,19 +41,22 @@ class BlockMap {
   static constexpr std::uint32_t kNoBlock = 0xffffffffu;
   struct Block {
     VoxelId voxel{};
-    CellId cell{};      // if not held
-    bool held = false;  // the voxel as a whole
+    CellId cell{};
   };
 
   BlockMap() = default;
-  // One block, all of space, that is always local.
+  // All of space is held.
   static BlockMap everything();
   // `cells`: by cell, the padded box around what is in it, in world space; empty: nothing.  `held`: by voxel.  `fetches`: cells
   // of others may become local.
   BlockMap(const BinTree& tree, std::span<const Bounds> cells, std::vector<bool> held, bool fetches);
 
   std::span<const Block> blocks() const { return blocks_; }
+  // The boxes of blocks that are looked for one by one, and which those are, in the order of the leaves.
   const Bvh& bvh() const { return bvh_; }
+  std::span<const std::uint32_t> inOrder() const { return inOrder_; }
+  // The objects of these blocks are part of a whole region now.
+  void join(const std::vector<bool>& joined);
   const Bounds& box(std::uint32_t block) const { return boxes_[block]; }
   // The block of a cell that may be fetched; kNoBlock if there is nothing in it, or it is part of a held voxel.
   std::uint32_t blockOf(CellId cell) const { return blockOfCell_[static_cast<std::size_t>(cell)]; }
@@ -70,13 +74,13 @@ class BlockMap {
  private:
   std::vector<Block> blocks_;
   std::vector<Bounds> boxes_;  // by block
-  Bvh bvh_;                    // of boxes_
-  std::vector<std::uint32_t> blockOfCell_;
+  Bvh bvh_;                    // of boxes_ of those in inOrder_
+  std::vector<std::uint32_t> inOrder_, blockOfCell_;
   std::vector<bool> held_;   // by voxel
   VoxelBounds voxelBounds_;  // of all voxels
   Bvh others_;               // boxes of cells that are never local
   std::optional<Bounds>
-      onlyVoxel_;  // the held one, if there is no other block; what stays inside of it is resolved
+      onlyVoxel_;  // the held one, if nothing is fetched; what stays inside of it is resolved
   bool allHeld_ = true, fetches_ = false;
 };
 
@@ -85,6 +89,8 @@ class LocalSpace {
   virtual ~LocalSpace() = default;
   virtual const BinTree& tree() const = 0;
   virtual const BlockMap& blocks() const = 0;
+  // What is local as a whole, for so many rays of a kind.
+  virtual std::span<const RegionRef> whole(std::size_t rays, RayKind kind) = 0;
   // The objects of a block, for so many rays of a kind.
   virtual RegionRef region(std::uint32_t block, std::size_t rays, RayKind kind) = 0;
   // Is a block local?  The same without being a use of it.

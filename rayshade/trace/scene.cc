@@ -11,6 +11,7 @@ void Scene::prepare(const Exposure& exposure, std::uint32_t voxels) {
     tree_ = {};
     blocks_ = BlockMap::everything();
     regions_.push_back(model.regionOf({objects.begin(), objects.end()}));
+    all_ = {&model, &regions_[0]};
     return;
   }
   Bounds world;
@@ -31,7 +32,9 @@ void Scene::prepare(const Exposure& exposure, std::uint32_t voxels) {
       boxes[at] = join(boxes[at], boundsInCell(model.boundsOf(object), tree_, cell));
     }
   }
-  blocks_ = BlockMap(tree_, boxes, std::vector<bool>(voxelCount(tree_), true), false);
+  // As if each voxel had been fetched.
+  all_ = {};
+  blocks_ = BlockMap(tree_, boxes, std::vector<bool>(voxelCount(tree_), false), true);
   for (const BlockMap::Block& block : blocks_.blocks())
     regions_.push_back(model.regionOf(std::move(members[static_cast<std::size_t>(block.cell)])));
 }

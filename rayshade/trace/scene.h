@@ -18,6 +18,9 @@ class Scene final : public LocalSpace {
 
   const BinTree& tree() const override { return tree_; }
   const BlockMap& blocks() const override { return blocks_; }
+  std::span<const RegionRef> whole(std::size_t, RayKind) override {
+    return std::span(&all_, all_.region != nullptr ? 1 : 0);
+  }
   RegionRef region(std::uint32_t block, std::size_t, RayKind) override { return {&model, &regions_[block]}; }
   bool isLocal(std::uint32_t) const override { return true; }
   std::size_t bytes() const;
@@ -25,7 +28,8 @@ class Scene final : public LocalSpace {
  private:
   BinTree tree_;
   BlockMap blocks_ = BlockMap::everything();
-  std::vector<Region> regions_;  // by block
+  std::vector<Region> regions_;  // by block; of all if there is none
+  RegionRef all_;                // unless space is cut
 };
 
 }  // namespace rayshade

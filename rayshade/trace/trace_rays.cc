@@ -42,9 +42,8 @@ RaySet reaching(const BlockMap& map, std::span<const Absent> absent, std::span<c
   return rays;
 }
 
-// The region of the only block there is, if it is local; there is no need to look for it.
-RegionRef onlyRegion(LocalSpace& space, std::size_t rays, RayKind kind) {
-  return space.blocks().blocks().size() == 1 ? space.region(0, rays, kind) : RegionRef{};
+constexpr RaySet allOf(std::size_t rays) {
+  return rays == kBundleSize ? ~RaySet{0} : (RaySet{1} << rays) - 1;
 }
 
 }  // namespace
@@ -52,44 +51,53 @@ RegionRef onlyRegion(LocalSpace& space, std::size_t rays, RayKind kind) {
 RaySet nearestLocalHits(LocalSpace& space, std::span<Segment> segments, std::span<const double> begin,
                         RayKind kind, std::span<Hit> hits, std::span<const Model*> models,
                         TraceCounts& counts, Processor processor) {
-  const BlockMap& map = space.blocks();
-  if (const RegionRef only = onlyRegion(space, segments.size(), kind); only.region != nullptr) {
-    nearestHits(*only.model, *only.region, segments, hits, processor);
-    std::fill_n(models.begin(), segments.size(), only.model);
+  std::span<const RegionRef> whole = space.whole(segments.size(), kind);
+  if (whole.empty()) {
+    std::fill_n(hits.begin(), segments.size(), Hit{});
+  } else {
+    nearestHits(*whole[0].model, *whole[0].region, segments, hits, processor);
+    std::fill_n(models.begin(), segments.size(), whole[0].model);
     counts.visits += segments.size();
     for (const Hit& hit : hits.first(segments.size())) counts.tests += hit.tests;
-    return 0;
+    whole = whole.subspan(1);
   }
-  std::fill_n(hits.begin(), segments.size(), Hit{});
+  // Another region, for some rays; which have met something nearer there.
+  const auto search = [&](const RegionRef& local, RaySet asking) {
+    RaySet improved = 0;
+    Part part(segments, asking);
+    // What was found elsewhere at the same t may have to give way.
+    for (std::size_t k = 0; k < part.size; ++k)
+      if (hits[part.from[k]].found())
+        part.segments[k].tMax = std::nextafter(part.segments[k].tMax, kInfinity);
+    Hit met[kBundleSize];
+    nearestHits(*local.model, *local.region, part.rays(), met, processor);
+    counts.visits += part.size;
+    for (std::size_t k = 0; k < part.size; ++k) {
+      const std::size_t i = part.from[k];
+      counts.tests += met[k].tests;
+      if (!met[k].found() || !nearer(met[k].t, local.model->store().object(met[k].object), segments[i].tMax,
+                                     hits[i].found() ? &models[i]->store().object(hits[i].object) : nullptr))
+        continue;
+      hits[i] = met[k];
+      models[i] = local.model;
+      segments[i].tMax = met[k].t;
+      improved |= RaySet{1} << i;
+    }
+    return improved;
+  };
+  for (const RegionRef& region : whole) search(region, allOf(segments.size()));
+  const BlockMap& map = space.blocks();
+  if (map.inOrder().empty()) return 0;
   std::vector<Absent> absent;
   const auto visitBlocks = [&]() RAYSHADE_INLINE {
     map.bvh().nearest(segments, [&](std::uint32_t first, std::uint32_t count, RaySet asking) {
       RaySet improved = 0;
-      for (const std::uint32_t block : map.bvh().order().subspan(first, count)) {
+      for (const std::uint32_t block : map.inOrder().subspan(first, count)) {
         const RegionRef local = space.region(block, static_cast<std::size_t>(std::popcount(asking)), kind);
         if (local.region == nullptr) {
           absent.push_back({block, asking});
-          continue;
-        }
-        Part part(segments, asking);
-        // What was found elsewhere at the same t may have to give way.
-        for (std::size_t k = 0; k < part.size; ++k)
-          if (hits[part.from[k]].found())
-            part.segments[k].tMax = std::nextafter(part.segments[k].tMax, kInfinity);
-        Hit met[kBundleSize];
-        nearestHits(*local.model, *local.region, part.rays(), met, processor);
-        counts.visits += part.size;
-        for (std::size_t k = 0; k < part.size; ++k) {
-          const std::size_t i = part.from[k];
-          counts.tests += met[k].tests;
-          if (!met[k].found() ||
-              !nearer(met[k].t, local.model->store().object(met[k].object), segments[i].tMax,
-                      hits[i].found() ? &models[i]->store().object(hits[i].object) : nullptr))
-            continue;
-          hits[i] = met[k];
-          models[i] = local.model;
-          segments[i].tMax = met[k].t;
-          improved |= RaySet{1} << i;
+        } else {
+          improved |= search(local, asking);
         }
       }
       return improved;
@@ -101,42 +109,49 @@ RaySet nearestLocalHits(LocalSpace& space, std::span<Segment> segments, std::spa
 
 LocalOcclusion localOcclusion(LocalSpace& space, std::span<Segment> segments, std::span<const double> begin,
                               TraceCounts& counts, Processor processor) {
-  const BlockMap& map = space.blocks();
   LocalOcclusion met;
-  const auto note = [&](std::size_t i, const Occlusion& occlusion) {
-    counts.tests += occlusion.tests;
-    if (occlusion.opaque) met.opaque |= RaySet{1} << i;
-    if (occlusion.transparent) met.transparent |= RaySet{1} << i;
-  };
   Occlusion occlusion[kBundleSize];
-  if (const RegionRef only = onlyRegion(space, segments.size(), RayKind::shadow); only.region != nullptr) {
-    occlusions(*only.model, *only.region, segments, occlusion, processor);
+  const auto note = [&](std::size_t i, const Occlusion& of) {
+    counts.tests += of.tests;
+    if (of.opaque) met.opaque |= RaySet{1} << i;
+    if (of.transparent) met.transparent |= RaySet{1} << i;
+  };
+  const auto search = [&](const RegionRef& local, RaySet asking) {
+    Part part(segments, asking);
+    occlusions(*local.model, *local.region, part.rays(), occlusion, processor);
+    counts.visits += part.size;
+    for (std::size_t k = 0; k < part.size; ++k) note(part.from[k], occlusion[k]);
+  };
+  std::span<const RegionRef> whole = space.whole(segments.size(), RayKind::shadow);
+  if (!whole.empty()) {
+    occlusions(*whole[0].model, *whole[0].region, segments, occlusion, processor);
     counts.visits += segments.size();
     for (std::size_t i = 0; i < segments.size(); ++i) note(i, occlusion[i]);
-    met.open = map.reachingOthers(segments, begin) & ~met.opaque;
-    return met;
+    whole = whole.subspan(1);
   }
+  for (const RegionRef& region : whole)
+    if (const RaySet left = allOf(segments.size()) & ~met.opaque) search(region, left);
+  const BlockMap& map = space.blocks();
   std::vector<Absent> absent;
-  const auto visitBlocks = [&]() RAYSHADE_INLINE {
-    map.bvh().any(segments, [&](std::uint32_t first, std::uint32_t count, RaySet asking) {
-      for (const std::uint32_t block : map.bvh().order().subspan(first, count)) {
-        const RaySet left = asking & ~met.opaque;
-        if (left == 0) break;
-        const RegionRef local =
-            space.region(block, static_cast<std::size_t>(std::popcount(left)), RayKind::shadow);
-        if (local.region == nullptr) {
-          absent.push_back({block, left});
-          continue;
+  if (!map.inOrder().empty()) {
+    const auto visitBlocks = [&]() RAYSHADE_INLINE {
+      map.bvh().any(segments, [&](std::uint32_t first, std::uint32_t count, RaySet asking) {
+        for (const std::uint32_t block : map.inOrder().subspan(first, count)) {
+          const RaySet left = asking & ~met.opaque;
+          if (left == 0) break;
+          const RegionRef local =
+              space.region(block, static_cast<std::size_t>(std::popcount(left)), RayKind::shadow);
+          if (local.region == nullptr) {
+            absent.push_back({block, left});
+          } else {
+            search(local, left);
+          }
         }
-        Part part(segments, left);
-        occlusions(*local.model, *local.region, part.rays(), occlusion, processor);
-        counts.visits += part.size;
-        for (std::size_t k = 0; k < part.size; ++k) note(part.from[k], occlusion[k]);
-      }
-      return asking & met.opaque;
-    });
-  };
-  onProcessor(processor, visitBlocks);
+        return asking & met.opaque;
+      });
+    };
+    onProcessor(processor, visitBlocks);
+  }
   for (Absent& a : absent) a.rays &= ~met.opaque;
   met.open = (reaching(map, absent, segments, begin) | map.reachingOthers(segments, begin)) & ~met.opaque;
   return met;

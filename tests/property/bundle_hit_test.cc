@@ -55,7 +55,7 @@ TEST(Bundle, EveryRayFindsWhatItFindsAlone) {
     const SceneHead head = job.read(scene.model.store());
     scene.settings = head.settings;
     scene.prepare(exposureOf(head.picture, 0));
-    const Region& space = *scene.region(0, 1, RayKind::nearest).region;
+    const Region& space = *scene.whole(1, RayKind::nearest)[0].region;
     SeededRandom numbers(seed);
     for (std::size_t round = 0; round < 24; ++round) {
       const double spreads[] = {0.01, 0.3, 3};

@@ -10,6 +10,7 @@
 #include <memory>
 
 #include "pvm/messages/rays.h"
+#include "pvm/trace/task_space.h"
 #include "rayshade/language/parser.h"
 #include "rayshade/scene/extract.h"
 #include "rayshade/space/walk.h"
@@ -67,7 +68,8 @@ class Task final : public LocalSpace {
   Task(const CutScene& scene, std::vector<bool> held, bool fetches)
       : scene_(scene), map_(scene.tree, scene.boxes, held, fetches), cells_(cellCount(scene.tree)) {
     for (std::size_t v = 0; v < held.size(); ++v)
-      regions_.push_back(held[v] ? scene.model().regionOf(scene.inVoxel[v]) : Region{});
+      if (held[v]) regions_.push_back(std::make_unique<Region>(scene.model().regionOf(scene.inVoxel[v])));
+    for (const auto& region : regions_) whole_.push_back({&scene.model(), region.get()});
   }
   static Task random(const CutScene& scene, Random& numbers, double share, bool fetches) {
     std::vector<bool> held(voxelCount(scene.tree));
@@ -77,17 +79,13 @@ class Task final : public LocalSpace {
 
   const BinTree& tree() const override { return scene_.tree; }
   const BlockMap& blocks() const override { return map_; }
+  std::span<const RegionRef> whole(std::size_t, RayKind) override { return whole_; }
   RegionRef region(std::uint32_t block, std::size_t rays, RayKind) override {
     EXPECT_GT(rays, 0u);
-    const BlockMap::Block& b = map_.blocks()[block];
-    if (b.held) return {&scene_.model(), &regions_[static_cast<std::size_t>(b.voxel)]};
-    const auto& cell = cells_[static_cast<std::size_t>(b.cell)];
+    const auto& cell = cells_[static_cast<std::size_t>(map_.blocks()[block].cell)];
     return cell ? RegionRef{&cell->model, &cell->region} : RegionRef{};
   }
-  bool isLocal(std::uint32_t block) const override {
-    const BlockMap::Block& b = map_.blocks()[block];
-    return b.held || has(b.cell);
-  }
+  bool isLocal(std::uint32_t block) const override { return has(map_.blocks()[block].cell); }
 
   bool has(CellId cell) const { return cells_[static_cast<std::size_t>(cell)] != nullptr; }
   void fetch(CellId cell) {
@@ -123,7 +121,8 @@ class Task final : public LocalSpace {
   };
   const CutScene& scene_;
   BlockMap map_;
-  std::vector<Region> regions_;  // by voxel
+  std::vector<std::unique_ptr<Region>> regions_;  // of the voxels that are held
+  std::vector<RegionRef> whole_;
   std::vector<std::unique_ptr<Fetched>> cells_;
 };
 
@@ -221,6 +220,48 @@ TEST(LocalSpace, FetchingWhatIsMissingFindsTheSame) {
   }
   EXPECT_GT(fetched, 300u);
   EXPECT_GT(hits, 200u);
+}
+
+// A task without voxels, whose cells are joined now and then.
+TEST(LocalSpace, CellsThatWereJoinedAreMetAsBefore) {
+  std::size_t resolved = 0, single = 0;
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    CutScene scene(seed);
+    SeededRandom numbers(seed + 3000);
+    EpochSettings at;
+    at.tree = scene.tree;
+    at.exposure = kExposure;
+    at.cellBytes.assign(cellCount(scene.tree), 1);
+    ObjectCache cache;
+    cache.begin(1 << 26);
+    TaskSpace space(at, nullptr, cache);
+    space.begin(scene.boxes, TaskId{1});
+    for (std::uint32_t c = 0; c < cellCount(scene.tree); ++c) {
+      if (numbers.real(0, 1) < 0.2) continue;
+      Extract extract(scene.model().store());
+      for (ObjectIndex object : scene.inCell[c]) extract.add(object);
+      cache.insert(CellId{c}, decode<std::vector<Item>>(encode(extract.items)).value(), kExposure, 1);
+      if (numbers.real(0, 1) < 0.7) continue;
+      cache.find(CellId{c}, 1 << 26);
+      space.settle();
+      ASSERT_TRUE(cache.isJoined(CellId{c}));
+      ASSERT_EQ(cache.joinedModel().leftOut(), 0u);
+    }
+    single += !space.blocks().inOrder().empty();
+    for (std::size_t round = 0; round < 6; ++round) {
+      const std::vector<Ray> rays = randomBundle(numbers, 1 + (seed + 5 * round) % kBundleSize);
+      const std::vector<Traced> expected = traceBundle(scene.whole, rays, {}),
+                                got = traceBundle(space, rays, {});
+      for (std::size_t i = 0; i < rays.size(); ++i) {
+        if (!got[i].resolved) continue;
+        expectSame(got[i], expected[i]);
+        ++resolved;
+      }
+    }
+  }
+  EXPECT_GT(resolved, 1000u);
+  EXPECT_GT(single, 20u);
 }
 
 // Every voxel is held by one of several tasks, which hand rays on by their position on the walk.

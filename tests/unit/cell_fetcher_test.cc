@@ -11,7 +11,8 @@
 namespace rayshade {
 namespace {
 
-constexpr std::uint32_t kCells = 64, kObjects = 200;
+constexpr std::uint32_t kCells = 64, kObjects = 200, kPerWireByte = 3;
+static_assert(kPerWireByte == kCacheBytesPerWireByte);
 
 std::vector<Item> spheres(std::uint32_t count) {
   std::vector<Item> items;
@@ -33,7 +34,7 @@ struct Asking {
     at.directory.voxelTasks = {TaskId{9}};
     at.directory.voxels.assign(kCells, 0);
     at.directory.clusters = 1;
-    at.cellBytes.assign(kCells, static_cast<std::uint32_t>(bytesOfCell / 4));
+    at.cellBytes.assign(kCells, static_cast<std::uint32_t>(bytesOfCell / kPerWireByte));
     at.policy.cacheBytes = cells * bytesOfCell + bytesOfCell / 2;
     at.policy.outstanding = outstanding;
     fetcher.begin();

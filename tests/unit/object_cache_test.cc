@@ -134,6 +134,62 @@ TEST(ObjectCache, RemembersWhatCellsWereWorthThatLeft) {
   EXPECT_LT(cache.ofThoseThatLeft().rays, 42) << "nobody has looked into cell 1";
 }
 
+// ---- joining
+
+TEST(ObjectCache, JoinsWhatHasComeWithEachObjectOnce) {
+  ObjectCache cache;
+  cache.begin(1 << 20);
+  insert(cache, 0, 40);
+  insert(cache, 7, 60);  // the 40, and more
+  cache.find(CellId{0}, 1000);
+  EXPECT_EQ(cache.find(CellId{7}, 1000).region->objects.size(), 60u);
+  ASSERT_TRUE(cache.join(0, {}));
+  EXPECT_EQ(held(cache), (Cells{0, 7}));
+  EXPECT_TRUE(cache.isJoined(CellId{0}));
+  EXPECT_EQ(cache.find(CellId{7}).region, nullptr) << "there is no single cell any more";
+  EXPECT_EQ(cache.joinedRegion().objects.size(), 60u);
+  EXPECT_EQ(cache.joinedModel().leftOut(), 0u);
+  insert(cache, 7, 60);
+  EXPECT_FALSE(cache.find(CellId{7}).region) << "it is here";
+  insert(cache, 3, 80);
+  cache.find(CellId{3}, 1000);
+  ASSERT_TRUE(cache.join(0, {}));
+  EXPECT_EQ(cache.joinedRegion().objects.size(), 80u);
+  EXPECT_EQ(held(cache), (Cells{0, 3, 7}));
+  EXPECT_LT(cache.bytes(), 2 * cache.joinedModel().bytes());
+  cache.begin(1 << 20);
+  EXPECT_TRUE(held(cache).empty());
+  EXPECT_EQ(cache.bytes(), 0u);
+}
+
+TEST(ObjectCache, JoinsOnlyWhenRaysHaveLookedOftenEnoughForWhatItCosts) {
+  ObjectCache cache;
+  cache.begin(1 << 20);
+  EXPECT_FALSE(cache.join(0, {})) << "nothing is here";
+  insert(cache, 0, 100);
+  EXPECT_FALSE(cache.join(0, {}));
+  cache.find(CellId{0}, cache.bytes() / 100);
+  EXPECT_FALSE(cache.join(0, {}));
+  cache.find(CellId{0}, cache.bytes());
+  EXPECT_TRUE(cache.join(0, {}));
+  insert(cache, 1, 2);
+  EXPECT_FALSE(cache.join(0, {})) << "looks are counted from the last time";
+}
+
+TEST(ObjectCache, JoinsOnlyWhenAllThereIsHasRoom) {
+  ObjectCache cache;
+  cache.begin(1 << 20);
+  insert(cache, 0);
+  cache.find(CellId{0}, 1 << 20);
+  EXPECT_FALSE(cache.join(0.9 * (1 << 20), {})) << "some of it will have to go";
+  EXPECT_TRUE(cache.join(0.6 * (1 << 20), {}));
+  cache.begin(bytesOfCell() + bytesOfCell() / 4);
+  insert(cache, 0);
+  cache.find(CellId{0}, 1 << 20);
+  EXPECT_FALSE(cache.join(0, {})) << "there is no room for the work";
+  EXPECT_LE(cache.counts().peakBytes, 1u << 20);
+}
+
 TEST(ObjectCache, ACellThatIsHereAlreadyIsNotTakenAgain) {
   ObjectCache cache;
   cache.begin(1 << 20);
