@@ -66,9 +66,10 @@ class Cutter {
     }
     const auto [axis, split, below] = place(box, first, voxels, contents);
     const auto [low, high] = cut(box, axis, split, 0);
-    const auto middle = std::partition(cubes.begin(), cubes.end(), [&](const DensityGrid::Cube& cube) {
-      return (index(cube, axis) + 0.5) * side_ < split;
-    });
+    const auto middle = std::partition(cubes.begin(), cubes.end(),
+                                       [&, axis = axis, split = split](const DensityGrid::Cube& cube) {
+                                         return (index(cube, axis) + 0.5) * side_ < split;
+                                       });
     const auto count = static_cast<std::size_t>(middle - cubes.begin());
     auto [lowContents, highContents] = cutContents(std::move(contents), axis, split);
     cutVoxels(low, first, below, cubes.first(count), std::move(lowContents), depth + 1);

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <numeric>
-#include <ranges>
 
 #include "rayshade/base/random.h"
 
@@ -41,9 +40,10 @@ std::vector<BoundsSample::Box> BoundsSample::boxes() const {
   std::ranges::sort(order, {}, [&](std::uint32_t i) { return kept_[i].number; });
   std::vector<Box> boxes;
   boxes.reserve(kept_.size());
-  for (const Kept& k :
-       order | std::views::transform([&](std::uint32_t i) -> const Kept& { return kept_[i]; }))
+  for (const std::uint32_t i : order) {
+    const Kept& k = kept_[i];
     boxes.push_back({k.bounds, std::max(1.0, threshold_ / k.size), k.size});
+  }
   return boxes;
 }
 
