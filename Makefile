@@ -194,7 +194,7 @@ test: build-tests
 
 # Sanitizers make tests eight times slower: fewer random scenes than without.
 guarded: $(BIN)/guarded-tests
-	@RAYSHADE_TEST_SEEDS=$${RAYSHADE_TEST_SEEDS:-30} PROGRAMS=guarded-tests tests/support/run_tests $(BIN)
+	@RAYSHADE_TEST_SEEDS=$${RAYSHADE_TEST_SEEDS:-30} tests/support/run_shards $(BIN) guarded-tests
 
 benches: $(benches)
 bench-embree: LIBRARIES += -lembree3
