@@ -152,7 +152,7 @@ TEST_F(PvmConsole, AHostThatIsAddedHelpsAndOneThatIsDeletedIsReplaced) {
   EXPECT_TRUE(says(console.hear("2 hosts", kPatience), "2 hosts"));
   const std::string picture = scratch_ / "pictures/a.png";
   console.type("spawn -" + lab.host(1) + " -> " +
-               host("--voxels 4 -R 160 120 -S 2 " +
+               host("--voxels 4 -R 400 300 -S 2 " +
                     fs::absolute("scenes/gallery/glass-and-mirrors.ray").string() + " -O " + picture));
   EXPECT_TRUE(soon([&] { return lab.busy(2); })) << "nothing runs on the host that was added";
   console.type("delete " + lab.host(2));

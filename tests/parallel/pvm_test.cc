@@ -106,7 +106,7 @@ class Pvm : public testing::Test {
 };
 
 // Long enough for somebody to die in the middle of it.
-constexpr const char* kLong = "-R 100 75 -S 3 -T 0 0 0 scenes/gallery/glass-and-mirrors.ray";
+constexpr const char* kLong = "-R 200 150 -S 3 -T 0 0 0 scenes/gallery/glass-and-mirrors.ray";
 
 TEST_F(Pvm, APlanForHostsThatAreNotThereStartsNothing) {
   std::ofstream(scratch("hosts")) << "localhost\nno-such-host.invalid sp=2000\n";
