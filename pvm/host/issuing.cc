@@ -14,9 +14,6 @@ constexpr std::size_t kRun = 64;
 // One sample that is slow must not let the others run away from it: windows from the oldest to the newest.
 constexpr std::size_t kMostSpan = 64;
 
-// That no tile has traced: so many in one message.
-constexpr std::size_t kManySamples = 256;
-
 std::size_t pixelsOf(const Tile& tile) {
   return static_cast<std::size_t>(tile.width) * static_cast<std::size_t>(tile.height);
 }
@@ -57,10 +54,10 @@ void Issuing::arrive(RecordId record, Color color) {
   if (!issued) return;
   if (issued->tile == kNoTile) return sampler_->supply(issued->sample, color);
   const auto open = tiles_.find(issued->tile);
-  TileSampler& tile = open->second.sampler;
+  TileSampler& tile = open->second;
   tile.supply(issued->sample, color);
   if (!tile.finished()) return;
-  sampler_->supply(open->second.tile, tile.colors());
+  sampler_->supply(tile.tile(), tile.colors());
   tiles_.erase(open);
 }
 
@@ -118,7 +115,7 @@ void Issuing::issueRuns() {
 // Samples that no tile has traced go first as soon as they are worth a message: rows wait for them.
 void Issuing::issueTiles() {
   while (!wanting_.empty()) {
-    const bool many = again_.size() + sampler_->missing() >= kManySamples;
+    const bool many = again_.size() + sampler_->missing() >= Sampler::kMany;
     std::optional<Tile> tile;
     if (!many) tile = nextTile();
     if (tile) {
@@ -127,7 +124,7 @@ void Issuing::issueTiles() {
       pixelsInFlight_ += pixelsOf(*tile);
       outbox_.post(wanting_.front(), work);
     } else {
-      const PrimaryRays work = takeSamples(kManySamples);
+      const PrimaryRays work = takeSamples(Sampler::kMany);
       if (work.samples.empty()) return;
       outbox_.post(wanting_.front(), work);
     }
@@ -167,13 +164,13 @@ bool Issuing::nextSample(Issued& issued) {
   if (inTiles(configuration_)) return false;
   for (auto& [number, open] : tiles_) {
     issued.tile = number;
-    if (open.sampler.next(std::span(&issued.sample, 1)) == 1) return true;
+    if (open.next(std::span(&issued.sample, 1)) == 1) return true;
   }
   const std::optional<Tile> tile = sampler_->nextTile();
   if (!tile) return false;
   issued.tile = tilesBegun_++;
-  const auto open = tiles_.emplace(issued.tile, OpenTile{*tile, TileSampler(sampler_->rules(), *tile)}).first;
-  return open->second.sampler.next(std::span(&issued.sample, 1)) == 1;
+  const auto open = tiles_.emplace(issued.tile, TileSampler(sampler_->rules(), *tile)).first;
+  return open->second.next(std::span(&issued.sample, 1)) == 1;
 }
 
 }  // namespace rayshade

@@ -1,9 +1,9 @@
 // Samples out, colours in: what is on its way, and where the next goes (Reinhard & Jansen, figure 2).
 //
-// Data driven, the host makes runs of samples for the task of the first voxel in which their rays may meet anything, and decides which pixels are
-// refined; demand driven, tasks ask for tiles and decide that themselves, but for the little that no tile can tell
-// (rayshade/sampling).  At most `window` samples are on their way at a time.  What does not come home because of a death is issued
-// again: samples are pure, so the same bits come back.
+// Data driven, the host makes runs of samples for the task of the first voxel in which their rays may meet anything, and
+// decides which pixels are refined; demand driven, tasks ask for tiles and decide that themselves, but for the little that no
+// tile can tell (rayshade/sampling).  At most `window` samples are on their way at a time.  What does not come home because of a
+// death is issued again: samples are pure, so the same bits come back.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -66,11 +66,7 @@ class Issuing {
   std::deque<TaskId> wanting_;  // tasks that asked for a tile, once for each
   std::uint64_t runs_ = 0;      // of samples, sent to voxel tasks
   // Data driven: the tiles that are sampled.  Refinement is decided in all of them side by side.
-  struct OpenTile {
-    Tile tile;
-    TileSampler sampler;
-  };
-  std::map<std::uint32_t, OpenTile> tiles_;
+  std::map<std::uint32_t, TileSampler> tiles_;
   VoxelBounds voxelBounds_;
   std::uint32_t tilesBegun_ = 0;
 };

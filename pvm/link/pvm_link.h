@@ -10,7 +10,6 @@
 #pragma once
 
 #include <deque>
-#include <thread>
 
 #include "pvm/link/host_table.h"
 #include "pvm/link/link_threads.h"
@@ -35,7 +34,7 @@ class PvmLink final : public Machine {
   std::optional<LinkEvent> wait(double seconds) override;
   void watch(TaskId task) override;
   double now() const override { return steadySeconds(); }
-  unsigned cores() const override { return std::max(1u, std::thread::hardware_concurrency()); }
+  unsigned cores() const override { return coreCount(); }
   void useThreads(unsigned threads) override { threads_.use(threads); }
   void run(Job job) override { threads_.run(std::move(job)); }
 

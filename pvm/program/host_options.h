@@ -24,8 +24,7 @@ struct HostProgramOptions {
 void declareHostOptions(CLI::App& app, HostProgramOptions& options);
 
 // What the named schedule means on so many hosts, whose memory is among the wishes, for a model of so many bytes; what is said in
-// detail counts more.  Answers with the reason
-// where the program chose.
+// detail counts more.  Answers with the reason where the program chose.
 std::string applySchedule(HostProgramOptions& options, std::uint32_t hosts, std::uint64_t bytes);
 
 }  // namespace rayshade

@@ -3,6 +3,8 @@
 
 #include <cinttypes>
 
+#include "rayshade/base/memory.h"
+
 namespace rayshade {
 namespace {
 
@@ -61,8 +63,6 @@ std::vector<Column> columns(const TaskSummary& task) {
           {"forwardedRays", count(r.forwardedRays)},
           {"cellsServed", count(r.cellsServed)}};
 }
-
-double megabytes(std::uint64_t bytes) { return 1e-6 * static_cast<double>(bytes); }
 
 }  // namespace
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "rayshade/base/memory.h"
 #include "rayshade/space/cost.h"
 
 namespace rayshade {
@@ -74,12 +75,6 @@ std::uint64_t cellsToFetch(const Survey& survey, std::uint64_t cacheBytes) {
   const std::uint64_t most = std::min(survey.objects / kLeastObjectsPerCell, kMostCells);
   const std::uint64_t least = std::max(survey.objects / kObjectsPerCell, kCellsPerScene);
   return std::min(most, std::max(least, static_cast<std::uint64_t>(std::min(byCache, 1e9))));
-}
-
-std::string megabytes(double bytes) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.1f MB", 1e-6 * bytes);
-  return text;
 }
 
 }  // namespace
@@ -170,14 +165,14 @@ std::string whatDoesNotFit(const Division& division, const std::vector<TaskPlace
     if (lack(task) > lack(worst)) worst = task;
   }
   if (!(missing > 0)) return "";
-  std::string text = "not enough memory for the scene: its objects take about " + megabytes(all) +
+  std::string text = "not enough memory for the scene: its objects take about " + sayBytes(all) +
                      " in the voxel-trace tasks; task " + std::to_string(worst) + " on " +
-                     places[worst].host + " would hold " + megabytes(division.expected[worst].bytes) +
-                     " and has room for " + megabytes(roomOf(worst)) + "; about " +
-                     megabytes(kPeak * missing) + " more memory is needed, on these hosts or on more of them";
+                     places[worst].host + " would hold " + sayBytes(division.expected[worst].bytes) +
+                     " and has room for " + sayBytes(roomOf(worst)) + "; about " + sayBytes(kPeak * missing) +
+                     " more memory is needed, on these hosts or on more of them";
   if (static_cast<double>(division.largestWhole) > roomOf(worst))
     text +=
-        "; one thing that cannot be divided takes " + megabytes(static_cast<double>(division.largestWhole));
+        "; one thing that cannot be divided takes " + sayBytes(static_cast<double>(division.largestWhole));
   return text;
 }
 

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstdarg>
 
+#include "rayshade/base/memory.h"
+
 namespace rayshade {
 namespace {
 
@@ -34,8 +36,6 @@ std::string describe(const Horizon& horizon) {
   }
   return "as long as fetching a cell pays";
 }
-
-double megabytes(std::uint64_t bytes) { return 1e-6 * static_cast<double>(bytes); }
 
 // What stays whole: a task that needs a part of it holds all of it.
 void addWhole(std::string& text, const Survey& survey) {

@@ -9,7 +9,7 @@ namespace {
 constexpr double kRemembered = 0.95;  // what one cell that leaves keeps of those before it
 
 // A look into a single cell takes as long as joining about so many bytes.
-constexpr double kBytesPerLook = 32;
+constexpr double kBytesJoinedPerLook = 32;
 // While cells are joined, so many times their bytes are needed: lists grow, trees are built in pieces.
 constexpr double kWhileJoining = 1.5;
 
@@ -74,7 +74,7 @@ void ObjectCache::makeRoomFor(std::size_t bytes) {
 }
 
 bool ObjectCache::join(double allBytes, const Exposure& exposure) {
-  if (cells_.empty() || kBytesPerLook * static_cast<double>(looks_) < static_cast<double>(bytes_) ||
+  if (cells_.empty() || kBytesJoinedPerLook * static_cast<double>(looks_) < static_cast<double>(bytes_) ||
       kWhileJoining * std::max(allBytes, static_cast<double>(bytes_)) > static_cast<double>(mostBytes_))
     return false;
   looks_ = 0;

@@ -82,13 +82,11 @@ void PyramidTask::on(TaskId, TileWork message) {
     ++context_.outbox.traffic.refused;
     return;
   }
-  TilesInHand::OpenTile open{tile, TileSampler(rules, tile), {}, 0};
-  open.cells = cellsOf(unit_.at.tree, unit_.at.request, rules, tile, unit_.at.exposure.frame);
-  open.cells.resize(beforeHorizon(open.cells, static_cast<std::size_t>(tile.width * tile.height)));
-  std::erase_if(open.cells, [this](CellId cell) { return unit_.at.isEmpty(cell); });
-  unit_.tiles.add(
-      message.number, std::move(open), [this](CellId cell) { return unit_.cache.contains(cell); },
-      [this](CellId cell) { unit_.cells.want(cell); });
+  std::vector<CellId> cells = cellsOf(unit_.at.tree, unit_.at.request, rules, tile, unit_.at.exposure.frame);
+  cells.resize(beforeHorizon(cells, static_cast<std::size_t>(tile.width * tile.height)));
+  std::erase_if(cells, [this](CellId cell) { return unit_.cells.isHere(cell); });
+  unit_.tiles.add(message.number, TileSampler(rules, tile), cells);
+  for (const CellId cell : cells) unit_.cells.want(cell);
   context_.notePeak(unit_.tiles.size() + unit_.shadows.waiting());
 }
 
@@ -116,7 +114,7 @@ void PyramidTask::on(TaskId, CellItems message) {
     return;
   }
   unit_.shadows.resume(cell);
-  unit_.tiles.arrive(cell, [] {});
+  unit_.tiles.arrive(cell);
   if (const auto waiting = waitingForCell_.find(static_cast<std::uint32_t>(cell));
       waiting != waitingForCell_.end()) {
     RayBundle rays = std::move(waiting->second);
@@ -146,7 +144,7 @@ bool PyramidTask::traceSome() {
                             goOn(std::move(ray), next, to);
                           });
   }
-  unit_.sendTiles(host_, [](const std::vector<CellId>&) {});
+  unit_.sendTiles(host_);
   return any;
 }
 

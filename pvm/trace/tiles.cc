@@ -53,15 +53,27 @@ std::vector<CellId> cellsOf(const BinTree& tree, const FrameRequest& request, co
                   pyramidOf(view.eye, {corner(u0, v0), corner(u1, v0), corner(u1, v1), corner(u0, v1)}));
 }
 
+void TilesInHand::add(std::uint32_t number, TileSampler&& sampler, std::span<const CellId> awaited) {
+  tiles_.emplace(number, OpenTile{std::move(sampler), awaited.size()});
+  for (const CellId cell : awaited) byCell_[static_cast<std::uint32_t>(cell)].push_back(number);
+}
+
+void TilesInHand::arrive(CellId cell) {
+  const auto waiting = byCell_.find(static_cast<std::uint32_t>(cell));
+  if (waiting == byCell_.end()) return;
+  for (const std::uint32_t number : waiting->second) --tiles_.at(number).missing;
+  byCell_.erase(waiting);
+}
+
 std::size_t TilesInHand::next(std::span<SampleId> samples, std::span<RecordId> records) {
   for (auto& [number, open] : tiles_) {
     if (open.missing > 0) continue;
     const std::size_t count = open.sampler.next(samples);
     const PixelArea& area = open.sampler.rules().area;
+    const Tile& tile = open.sampler.tile();
     for (std::size_t i = 0; i < count; ++i) {
       const SampleId& s = samples[i];
-      const auto pixel =
-          static_cast<RecordId>((s.y - area.y - open.tile.y) * open.tile.width + s.x - area.x - open.tile.x);
+      const auto pixel = static_cast<RecordId>((s.y - area.y - tile.y) * tile.width + s.x - area.x - tile.x);
       records[i] = (RecordId{number} << kPixelBits | pixel) << kCellBits | static_cast<RecordId>(s.cell);
     }
     if (count > 0) return count;
@@ -73,13 +85,14 @@ bool TilesInHand::supply(RecordId record, Color color) {
   const RecordId number = record >> (kPixelBits + kCellBits);
   const auto found = tiles_.find(static_cast<std::uint32_t>(number));
   if (number > 0xffffffffu || found == tiles_.end()) return false;
-  OpenTile& open = found->second;
+  TileSampler& sampler = found->second.sampler;
+  const Tile& tile = sampler.tile();
   const auto pixel = static_cast<std::int32_t>(record >> kCellBits & ((1 << kPixelBits) - 1));
-  if (pixel >= open.tile.width * open.tile.height) return false;
-  const Place place{open.tile.y + pixel / open.tile.width, open.tile.x + pixel % open.tile.width};
+  if (pixel >= tile.width * tile.height) return false;
+  const Place place{tile.y + pixel / tile.width, tile.x + pixel % tile.width};
   const auto cell = static_cast<std::int32_t>(record & ((1 << kCellBits) - 1));
-  if (!open.sampler.supply(sampleAt(open.sampler.rules(), place, cell), color)) return false;
-  if (open.sampler.finished()) finished_.push_back(found->first);
+  if (!sampler.supply(sampleAt(sampler.rules(), place, cell), color)) return false;
+  if (sampler.finished()) finished_.push_back(found->first);
   return true;
 }
 
@@ -87,7 +100,7 @@ std::optional<TilesInHand::FinishedTile> TilesInHand::takeFinished() {
   if (finished_.empty()) return std::nullopt;
   const auto found = tiles_.find(finished_.front());
   finished_.pop_front();
-  FinishedTile finished{found->first, found->second.sampler.colors(), std::move(found->second.cells)};
+  FinishedTile finished{found->first, found->second.sampler.colors()};
   tiles_.erase(found);
   return finished;
 }

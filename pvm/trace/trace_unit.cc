@@ -26,6 +26,15 @@ void TraceUnit::wantTiles(TaskId host, unsigned threads) {
     context.outbox.post(host, PyramidWanted{});
 }
 
+void TraceUnit::sendTiles(TaskId host) {
+  while (std::optional<TilesInHand::FinishedTile> tile = tiles.takeFinished()) {
+    ++pyramids;
+    pyramidRays += tile->colors.samples;
+    context.outbox.post(host, TileDone{tile->number, std::move(tile->colors)});
+    context.outbox.post(host, PyramidWanted{});
+  }
+}
+
 void TraceUnit::setWeights(const Weights& message) {
   if (message.epoch == context.epoch && message.shadeWeights.size() == at.directory.shadeTasks.size())
     at.directory.shadeWeights = message.shadeWeights;

@@ -51,9 +51,8 @@ struct TraceUnit {
   bool traceTile(Queue queue, GoesOn goesOn);
   // Asks the host for the first tiles, enough for so many threads.
   void wantTiles(TaskId host, unsigned threads = 1);
-  // Sends what has become of tiles to the host and asks for others; done(cells) for each tile.
-  template <class Done>
-  void sendTiles(TaskId host, Done done);
+  // Sends what has become of tiles to the host and asks for others.
+  void sendTiles(TaskId host);
 
   // What this unit has counted.
   void addTo(Report& report) const;
@@ -156,17 +155,6 @@ bool TraceUnit::traceTile(Queue queue, GoesOn goesOn) {
   for (std::size_t i = 0; i < count; ++i) to[i] = {context.link.self(), records[i], 0};
   trace(primaries_, {}, std::span(to).first(count), queue, goesOn);
   return true;
-}
-
-template <class Done>
-void TraceUnit::sendTiles(TaskId host, Done done) {
-  while (std::optional<TilesInHand::FinishedTile> tile = tiles.takeFinished()) {
-    ++pyramids;
-    pyramidRays += tile->colors.samples;
-    done(tile->cells);
-    context.outbox.post(host, TileDone{tile->number, std::move(tile->colors)});
-    context.outbox.post(host, PyramidWanted{});
-  }
 }
 
 }  // namespace rayshade

@@ -111,8 +111,7 @@ void VoxelTask::on(TaskId, TileWork message) {
     jobs_.add(message);
     return;
   }
-  const auto none = [](CellId) { return true; };
-  unit_.tiles.add(message.number, {message.tile, TileSampler(*unit_.rules, message.tile), {}, 0}, none, none);
+  unit_.tiles.add(message.number, TileSampler(*unit_.rules, message.tile));
   context_.notePeak(waiting());
 }
 
@@ -162,7 +161,7 @@ bool VoxelTask::traceSome() {
         [this](Ray&& ray, const ReplyTo& to) { queue(std::move(ray), to); },
         [this](Ray&& ray, const NextBlock& next, const ReplyTo& to) { goOn(std::move(ray), next, to); });
   }
-  unit_.sendTiles(host_, [](const std::vector<CellId>&) {});
+  unit_.sendTiles(host_);
   return any;
 }
 

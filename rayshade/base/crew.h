@@ -5,6 +5,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <condition_variable>
 #include <deque>
 #include <exception>
@@ -14,6 +15,9 @@
 #include <vector>
 
 namespace rayshade {
+
+// How many threads the machine can run at a time, at least one.
+inline unsigned coreCount() { return std::max(1u, std::thread::hardware_concurrency()); }
 
 class Crew {
  public:

@@ -6,6 +6,7 @@
 #include <sys/sysinfo.h>
 
 #include <algorithm>
+#include <cstdio>
 
 namespace rayshade {
 
@@ -22,6 +23,12 @@ std::uint64_t memoryLimit() {
     least = least == 0 ? limit.rlim_cur : std::min<std::uint64_t>(least, limit.rlim_cur);
   }
   return least;
+}
+
+std::string sayBytes(double bytes) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1f MB", megabytes(bytes));
+  return text;
 }
 
 void keepMemoryTight() {

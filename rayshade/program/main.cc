@@ -5,6 +5,7 @@
 #include <cinttypes>
 
 #include "rayshade/base/interruption.h"
+#include "rayshade/base/memory.h"
 #include "rayshade/program/command_line.h"
 #include "rayshade/program/frame_files.h"
 #include "rayshade/program/options.h"
@@ -21,8 +22,6 @@ using namespace rayshade;
 struct Times {
   double read = 0, build = 0, trace = 0;
 };
-
-double megabytes(std::size_t bytes) { return 1e-6 * static_cast<double>(bytes); }
 
 void writeReport(std::FILE* to, const Scene& scene, const FrameResult& result, const Times& times,
                  std::uint64_t pictureSum) {

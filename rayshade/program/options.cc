@@ -2,8 +2,8 @@
 #include "rayshade/program/options.h"
 
 #include <limits>
-#include <thread>
 
+#include "rayshade/base/crew.h"
 #include "rayshade/language/viewing.h"
 #include "rayshade/program/option_values.h"
 
@@ -17,9 +17,7 @@ constexpr double kHuge = 1e9;
 
 }  // namespace
 
-unsigned threadsOf(const Options& options) {
-  return options.threads.value_or(std::max(1u, std::thread::hardware_concurrency()));
-}
+unsigned threadsOf(const Options& options) { return options.threads.value_or(coreCount()); }
 
 void declareOptions(CLI::App& app, Options& o) {
   // CLI11 lets too few values through where the last ones count.

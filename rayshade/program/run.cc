@@ -9,6 +9,7 @@
 
 #include "rayshade/base/error.h"
 #include "rayshade/base/interruption.h"
+#include "rayshade/base/memory.h"
 
 namespace rayshade {
 namespace {
@@ -29,12 +30,6 @@ class Reserve {
   void* bytes_ = ::operator new (std::size_t{1} << 20);
 };
 
-std::string megabytes(double bytes) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.1f MB", 1e-6 * bytes);
-  return text;
-}
-
 // A signal may come to light as something else, as a file that could not be written.
 int endsWith(int status, const std::string& name, const std::string& message) {
   std::fprintf(stderr, "%s\n", (interrupted() ? name + interruptionText() : message).c_str());
@@ -45,13 +40,13 @@ int endsWith(int status, const std::string& name, const std::string& message) {
 }  // namespace
 
 std::string objectsAndBytes(std::uint64_t objects, std::uint64_t bytes) {
-  return std::to_string(objects) + " objects (" + megabytes(static_cast<double>(bytes)) + ")";
+  return std::to_string(objects) + " objects (" + sayBytes(static_cast<double>(bytes)) + ")";
 }
 
 std::string memoryOfProcess() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
-  return "the process has " + megabytes(1024.0 * static_cast<double>(usage.ru_maxrss));
+  return "the process has " + sayBytes(1024.0 * static_cast<double>(usage.ru_maxrss));
 }
 
 int runProgram(const std::string& program, const std::function<int()>& work,

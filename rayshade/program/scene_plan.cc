@@ -7,7 +7,7 @@
 namespace rayshade {
 namespace {
 
-// Samples as Sampler takes them: see image/sampler.h.
+// Samples as Sampler takes them: see sampling/sampler.h.
 void planSamples(ScenePlan& plan, const PictureSpec& picture) {
   const auto width = static_cast<std::uint64_t>(plan.area.width);
   const auto height = static_cast<std::uint64_t>(plan.area.height);

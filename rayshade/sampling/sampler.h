@@ -24,6 +24,8 @@ struct Completed {
 class Sampler {
  public:
   static constexpr std::int32_t kTileSide = 32;  // pixels
+  // So many samples that no tile has traced are worth being traced before the next tile, and together.
+  static constexpr std::size_t kMany = 256;
 
   // Throws what samplingRules() throws.
   Sampler(const PictureSpec& spec, std::uint64_t seed, std::uint32_t frame,

@@ -33,6 +33,7 @@ class TileSampler {
   TileSampler(const SamplingRules& rules, const Tile& tile);
 
   const SamplingRules& rules() const { return rows_.rules(); }
+  const Tile& tile() const { return tile_; }
   // Puts samples to be traced into `out` and says how many; none: wait for colours, or all have been given.  Neighbours come close
   // together: blocks of 8 x 8 pixels, all cells of a pixel in a row.
   std::size_t next(std::span<SampleId> out);

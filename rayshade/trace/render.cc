@@ -9,8 +9,7 @@
 namespace rayshade {
 namespace {
 
-constexpr std::size_t kTilesEach = 3;        // of a thread: one that is traced, and others that wait
-constexpr std::size_t kSamplesAtOnce = 256;  // that no tile has traced
+constexpr std::size_t kTilesEach = 3;  // of a thread: one that is traced, and others that wait
 
 }  // namespace
 
@@ -51,13 +50,13 @@ namespace {
 // Tiles, unless there are enough samples that no tile has traced, or no tile may be given.
 std::optional<Work> nextWork(Sampler& sampler) {
   Work work;
-  if (sampler.missing() < kSamplesAtOnce) {
+  if (sampler.missing() < Sampler::kMany) {
     if (const std::optional<Tile> tile = sampler.nextTile()) {
       work.tile = *tile;
       return work;
     }
   }
-  work.samples.resize(kSamplesAtOnce);
+  work.samples.resize(Sampler::kMany);
   work.samples.resize(sampler.nextSamples(work.samples));
   if (work.samples.empty()) return std::nullopt;
   return work;

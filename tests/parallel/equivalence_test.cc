@@ -59,7 +59,7 @@ RenderedByTasks renderSplit(const Job& job, const Splitting& split) {
 
 // Every ray is followed once, so that the tasks together count what one process counts; the voxels that they visit are
 // others, because a task looks at all of its own voxels at once and spares those of others where a ray could meet nothing.
-// With adaptive sampling the host guesses ahead: it may trace samples that are not needed in the end.
+// With adaptive sampling tiles may trace samples that are not needed in the end, whoever traces them.
 void expectSameWork(const TraceCounts& sequential, const TraceCounts& tasks) {
   EXPECT_EQ(tasks.hits, sequential.hits);
   EXPECT_EQ(tasks.shadowRays, sequential.shadowRays);
@@ -135,7 +135,7 @@ TEST(Equivalence, TheTasksTogetherDoTheWorkOfOneProcessOverTheSameVoxels) {
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
     SCOPED_TRACE("scene seed " + std::to_string(seed));
     Job job = jobOfText(randomScene(seed));
-    job.options.samples = 1;  // no guesses
+    job.options.samples = 1;  // none in vain
     Splitting split = randomSplit(1000 + seed);
     split.pyramids = 0;       // they fetch cells instead of sending rays: other visits
     split.by = Split::equal;  // as the sequential renderer cuts

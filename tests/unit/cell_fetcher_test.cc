@@ -7,23 +7,13 @@
 
 #include "tests/support/null_link.h"
 #include "tests/support/random.h"
+#include "tests/support/sphere_items.h"
 
 namespace rayshade {
 namespace {
 
 constexpr std::uint32_t kCells = 64, kObjects = 200, kPerWireByte = 3;
 static_assert(kPerWireByte == kCacheBytesPerWireByte);
-
-std::vector<Item> spheres(std::uint32_t count) {
-  std::vector<Item> items;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    SceneObject object;
-    object.id = ObjectId{i};
-    object.body = Sphere{{3.0 * i, 0, 0}, 1};
-    items.emplace_back(object);
-  }
-  return items;
-}
 
 // A task that asks for cells, all alike, of which `cells` have room in its cache.
 struct Asking {

@@ -32,7 +32,7 @@ constexpr Known kKnown[] = {
     {"rayshade/optics/refraction.h", "1e-5", "exponent of a highlight"},
     {"rayshade/optics/surface.h", "1e-5", "share of light"},
     {"rayshade/program/progress.h", "1e-6", "rays in a report"},
-    {"rayshade/program/run.cc", "1e-6", "bytes in a message"},
+    {"rayshade/base/memory.h", "1e-6", "bytes in a message"},
     {"rayshade/scene/camera.cc", "1e-5", "sine of the angle between the line of sight and up"},
     {"rayshade/scene/settings.h", "0.002", "cutoff, a colour"},
     {"rayshade/language/viewing.cc", "1e-5", "sine of the angle between the line of sight and up"},

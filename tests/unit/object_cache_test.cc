@@ -6,20 +6,11 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/random.h"
+#include "tests/support/sphere_items.h"
 
 namespace rayshade {
 namespace {
 
-std::vector<Item> spheres(std::uint32_t count) {
-  std::vector<Item> items;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    SceneObject object;
-    object.id = ObjectId{i};
-    object.body = Sphere{{3.0 * i, 0, 0}, 1};
-    items.emplace_back(object);
-  }
-  return items;
-}
 void insert(ObjectCache& cache, std::uint32_t cell, std::uint32_t objects = 4) {
   cache.insert(CellId{cell}, spheres(objects), {}, 100);
 }
