@@ -8,11 +8,13 @@
 #   make man          the manual pages alone, into bin/share/man (`make` writes them, too)
 #   make check-sanitized   the tests of what reads bytes of others or juggles tasks, under clang's sanitizers for
 #                     addresses and undefined behaviour; all tests: make SAN=address,undefined check
+#   make check-threads     pictures of several threads under clang's sanitizer for threads
 #   make docs         the generated parts of the documents (docs/generate); `make check` finds what is out of date
 #   make fuzz         the fuzzers, FUZZ_SECONDS each, in the same build tree
 #   make bench        docs/speed-and-error.md: measures error against time (a few minutes)
 #   make benches      the other measuring programs into bin/bench/
 #   make bench-embree bin/bench/embree_rate: rays per second beside Embree (Debian: libembree-dev)
+#   make bench-splitting     what threads and tasks cost against one thread, with the goals; then start-up and memory
 #   make experiments  the schemes of the paper measured over PVM, into docs/experiments/ (7 minutes);
 #                     QUICK=1: small pictures, into BUILD/experiments (2 minutes)
 #   make prove-adding a new primitive in a copy of this tree: what it costs, and what is said when something is forgotten
@@ -72,6 +74,9 @@ link_tests := $(call objects,$(wildcard tests/parallel/link_*test.cc))
 tests := $(filter-out $(pvm_tests) $(link_tests),$(call objects,$(call find_sources,tests/unit tests/property tests/golden tests/parallel tests/fault)))
 # What sanitizers are most likely to find fault with, because it reads bytes of others or juggles tasks, says so.
 guarded_tests := $(call objects,$(sort $(shell grep -rl --include='*_test.cc' '^// guarded: ' tests)))
+# What threads share, or what calls it: compiled once more, for the sanitizer of threads.
+threaded := $(patsubst %.cc,$(BUILD)/threaded/%.o,rayshade/base/crew.cc $(call find_sources,rayshade/accel rayshade/intersect \
+              rayshade/lights rayshade/sampling rayshade/shading rayshade/textures rayshade/trace))
 fuzzers := $(patsubst tests/fuzz/%.cc,$(BIN)/%,$(wildcard tests/fuzz/*_fuzz.cc))
 embree_bench := tests/bench/embree_rate.cc
 benches := $(patsubst tests/bench/%.cc,$(BIN)/bench/%,$(filter-out $(embree_bench),$(call find_sources,tests/bench)))
@@ -84,7 +89,7 @@ pages := $(documented:%=$(BIN)/share/man/man1/%.1) $(patsubst %,$(BIN)/share/man
 completions := $(documented:%=$(BIN)/share/bash-completion/completions/%)
 test_programs := $(BIN)/rayshade-tests $(BIN)/link-tests $(BIN)/pvm-tests
 
-.PHONY: all man demo docs check check-sanitized build-tests test guarded install install-files uninstall fuzz fuzzers bench benches bench-embree experiments prove-adding graph format clean packages always
+.PHONY: all man demo docs check check-sanitized check-threads build-tests test guarded install install-files uninstall fuzz fuzzers bench benches bench-splitting bench-embree experiments prove-adding graph format clean packages always
 all: $(programs) $(pages) $(completions)
 man: $(pages)
 
@@ -109,6 +114,11 @@ $(BUILD)/%.o: %.cc $(BUILD)/flags
 	$(call say,compile $<)
 	$(quietly)$(CXX) $(FLAGS) $(also) $(EXTRA_FLAGS) -MMD -MP -c $< -o $@
 
+$(threaded): $(BUILD)/threaded/%.o: %.cc $(BUILD)/flags
+	@mkdir -p $(@D)
+	$(call say,compile $< for check-threads)
+	$(quietly)$(CLANG) -std=c++20 -O1 -g1 -Wno-psabi -Wno-unknown-warning-option -ffp-contract=off -I. -fsanitize=thread -MMD -MP -c $< -o $@
+
 $(BUILD)/libcore.a: $(core)
 $(BUILD)/libtasks.a: $(tasks)
 $(BUILD)/libspd.a: $(spd)
@@ -127,6 +137,10 @@ libraries := $(BUILD)/libtasks.a $(BUILD)/libspd.a $(BUILD)/libcore.a
 
 $(BIN)/rayshade: $(BUILD)/rayshade/program/main.o $(version) $(BUILD)/libcore.a
 	$(call link)
+# The objects that are checked stand before the library that holds them, too.
+$(BUILD)/threaded/program: $(BUILD)/rayshade/program/main.o $(version) $(threaded) $(BUILD)/libcore.a
+	$(call say,link $@)
+	$(quietly)$(CLANG) -fsanitize=thread $(filter %.o,$^) $(filter %.a,$^) $(LIBRARIES) -o $@
 $(BIN)/rayshade-error: $(BUILD)/rayshade/program/error_main.o $(version) $(BUILD)/libcore.a
 	$(call link)
 $(BIN)/spd: $(BUILD)/scenes/spd/main.o $(version) $(BUILD)/libspd.a $(BUILD)/libcore.a
@@ -172,6 +186,8 @@ check: packages
 check-sanitized:
 	@tests/support/install_packages nice
 	@$(MAKE) $(sanitized) guarded
+check-threads: $(BUILD)/threaded/program $(BIN)/rayshade
+	@tests/support/check_threads $^
 build-tests: all $(test_programs)
 test: build-tests
 	@tests/support/run_tests $(BIN)
@@ -186,6 +202,11 @@ bench-embree: $(BIN)/bench/embree_rate
 
 bench: $(BIN)/rayshade $(BIN)/rayshade-error $(BIN)/spd
 	@PYTHONDONTWRITEBYTECODE=1 tests/bench/speed_and_error/run --bin $(BIN) docs
+
+bench-splitting: all benches
+	@tests/bench/splitting
+	@tests/bench/start_up || true
+	@tests/bench/memory || true
 
 experiments: all
 	@PYTHONDONTWRITEBYTECODE=1 tests/bench/experiments/run $(BIN) $(if $(QUICK),$(BUILD)/experiments --quick,docs/experiments)

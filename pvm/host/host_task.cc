@@ -199,6 +199,7 @@ bool HostTask::configure() {
   outbox_.postToAll(tasks, configuration_);
   outbox_.flush();
   while (roster_.complete() && !std::ranges::all_of(roster_.slaves(), &Slave::ready)) takeEvents(1);
+  issuing_.beginEpoch();
   return roster_.complete();
 }
 

@@ -22,9 +22,8 @@ namespace rayshade {
 
 class HostTask {
  public:
-  using Accepted =
-      TypeList<ItemsTaken, Ready, Report, Pong, Load, Answer, SampleColors, TileDone, PyramidWanted,
-               ImageTaken>;
+  using Accepted = TypeList<ItemsTaken, Ready, Report, Pong, Load, Answer, SampleColors, TileDone,
+                            PyramidWanted, ImageTaken>;
   // Reads the scene once more, from the beginning, into a sink.
   using SceneReader = std::function<void(SceneSink&)>;
 
@@ -44,9 +43,7 @@ class HostTask {
   void on(TaskId from, Ready message);
   void on(TaskId from, Report message);
   void on(TaskId, Pong) {}
-  void on(TaskId from, ImageTaken message) {
-    outbox_.traffic.refused += !images_.arrive(from, message);
-  }
+  void on(TaskId from, ImageTaken message) { outbox_.traffic.refused += !images_.arrive(from, message); }
   void on(TaskId from, Load message);
   void on(TaskId, Answer message) { issuing_.arrive(message.record, message.color); }
   void on(TaskId, const SampleColors& message);

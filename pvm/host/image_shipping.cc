@@ -63,7 +63,8 @@ bool ImageShipping::anyOpen() {
   return std::ranges::any_of(roster_.slaves(), [this](const Slave& slave) {
     const auto holder = holders_.find(slave.task);
     return slave.task != kNobody && holder != holders_.end() &&
-           std::ranges::any_of(holder->second.images, [](const auto& entry) { return !entry.second.answered; });
+           std::ranges::any_of(holder->second.images,
+                               [](const auto& entry) { return !entry.second.answered; });
   });
 }
 

@@ -30,6 +30,10 @@ void Issuing::beginFrame() {
                    std::max(side, 1));
 }
 
+void Issuing::beginEpoch() {
+  if (!inTiles(configuration_)) voxelBounds_ = VoxelBounds(configuration_.tree, configuration_.cellBounds);
+}
+
 void Issuing::endFrame() {
   inFlight_.takeAll();
   tilesInFlight_.takeAll();
@@ -72,11 +76,13 @@ bool Issuing::arrive(const TileDone& message) {
   return false;
 }
 
-// Enough that nobody waits for the host.
+// Enough that nobody waits for the host, and when rays travel so few that what waits stays in the caches of processors.
 std::size_t Issuing::window() const {
-  constexpr std::size_t kLeast = 16384, kEach = 4096;
-  const Directory& directory = configuration_.directory;
-  return options_.window > 0 ? options_.window : std::max(kLeast, kEach * finderCount(directory));
+  constexpr std::size_t kInTiles = 4096, kTravelling = 512,
+                        kLeast = 4096;  // samples, for each task that traces
+  if (options_.window > 0) return options_.window;
+  return std::max(kLeast,
+                  (inTiles(configuration_) ? kInTiles : kTravelling) * finderCount(configuration_.directory));
 }
 
 void Issuing::issue() {
@@ -87,18 +93,25 @@ void Issuing::issue() {
   }
 }
 
-// Rays of a lens may begin in another voxel than the first of their run: then they are handed on there.
+// What the ray of a sample goes through before this voxel is empty.
+VoxelId Issuing::firstVoxel(const SampleId& sample) const {
+  const Ray ray = primaryRay(configuration_.request, configuration_.exposure, sample);
+  VoxelWalk walk(configuration_.tree, ray.origin, ray.direction);
+  WalkStep<VoxelId> step, first;
+  walk.next(first);
+  for (step = first; !voxelBounds_.mayMeet(step.where, ray.origin, ray.direction, 0, kInfinity);)
+    if (!walk.next(step)) return first.where;
+  return step.where;
+}
+
+// Neighbours meet the same voxel first, as a rule.  A ray that does not is handed on by whoever gets it.
 void Issuing::issueRuns() {
   const Directory& directory = configuration_.directory;
   for (;;) {
     const PrimaryRays work = takeSamples(kRun);
     if (work.samples.empty()) return;
-    const Ray ray = primaryRay(configuration_.request, configuration_.exposure, work.samples.front());
-    VoxelWalk walk(configuration_.tree, ray.origin, ray.direction);
-    WalkStep<VoxelId> first;
-    walk.next(first);
     const auto cluster = static_cast<std::uint32_t>(runs_++ % directory.clusters);
-    outbox_.post(directory.ownerOf(first.where, cluster), work);
+    outbox_.post(directory.ownerOf(firstVoxel(work.samples[work.samples.size() / 2]), cluster), work);
   }
 }
 

@@ -1,6 +1,6 @@
 // Samples out, colours in: what is on its way, and where the next goes (Reinhard & Jansen, figure 2).
 //
-// Data driven, the host makes runs of samples for the task of the voxel in which their rays begin, and decides which pixels are
+// Data driven, the host makes runs of samples for the task of the first voxel in which their rays may meet anything, and decides which pixels are
 // refined; demand driven, tasks ask for tiles and decide that themselves, but for the little that no tile can tell
 // (rayshade/sampling).  At most `window` samples are on their way at a time.  What does not come home because of a death is issued
 // again: samples are pure, so the same bits come back.
@@ -13,6 +13,7 @@
 #include "pvm/messages/outbox.h"
 #include "pvm/schedule/options.h"
 #include "rayshade/sampling/sampler.h"
+#include "rayshade/space/voxel_bounds.h"
 
 namespace rayshade {
 
@@ -23,6 +24,7 @@ class Issuing {
       : outbox_(outbox), configuration_(configuration), options_(options) {}
 
   void beginFrame();  // the one of the configuration
+  void beginEpoch();  // the one of the configuration, when all that is shipped lies in its cells
   void endFrame();    // what is still on its way is of no use
   Sampler& sampler() { return *sampler_; }
 
@@ -47,6 +49,7 @@ class Issuing {
   std::size_t window() const;
   void issueRuns();
   void issueTiles();
+  VoxelId firstVoxel(const SampleId& sample) const;
   PrimaryRays takeSamples(std::size_t most);
   bool nextSample(Issued& issued);
   std::optional<Tile> nextTile();
@@ -68,6 +71,7 @@ class Issuing {
     TileSampler sampler;
   };
   std::map<std::uint32_t, OpenTile> tiles_;
+  VoxelBounds voxelBounds_;
   std::uint32_t tilesBegun_ = 0;
 };
 

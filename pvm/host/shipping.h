@@ -28,8 +28,7 @@ class Shipping {
 
   // `targets`: which of the directory's voxel tasks are shipped to.  What lies in each cell of the tree is noted in
   // `configuration`.
-  Shipping(Configure& configuration, std::set<std::uint32_t> targets, Send send,
-           BringImage bringImage);
+  Shipping(Configure& configuration, std::set<std::uint32_t> targets, Send send, BringImage bringImage);
 
   SceneSink& sink() { return stream_; }  // for the whole scene
   void finish();                         // sends what is left

@@ -18,6 +18,8 @@ void LinkThreads::use(unsigned threads) {
   descriptor_ = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
   if (descriptor_ < 0) throw std::system_error(errno, std::generic_category(), "eventfd");
   crew_ = std::make_unique<Crew>(threads + 1, [descriptor = descriptor_] { eventfd_write(descriptor, 1); });
+  if (crew_->size() == 1)
+    throw std::system_error(EAGAIN, std::generic_category(), "a thread cannot be started");
 }
 
 void LinkThreads::run(Link::Job job) {

@@ -122,7 +122,8 @@ int PvmLink::receive(double seconds) {
 
 // The same when threads may wake this one, which libpvm would not notice.
 int PvmLink::receiveOrWake(double seconds) {
-  const int buffer = daemon_.check(pvm_nrecv(-1, -1), "nrecv");  // a message may lie in libpvm with all sockets quiet
+  const int buffer =
+      daemon_.check(pvm_nrecv(-1, -1), "nrecv");  // a message may lie in libpvm with all sockets quiet
   if (buffer > 0) return buffer;
   std::vector<pollfd> sockets;
   daemon_.addSockets(sockets);

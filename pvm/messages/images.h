@@ -9,13 +9,13 @@
 
 namespace rayshade {
 
-// Host to a tracing task: the pixels of this image lie on its machine, at `image.place`.
+// Host to a tracing task: where the pixels of an image lie on its machine.
 struct ImagePlace {
   static constexpr bool isFact = true;
   static constexpr std::uint8_t tag = 23;
   Image image;
 };
-// Host to a tracing task: some of the pixels of an image, for its machine; they come in order.
+// Host to a tracing task: the next pixels of an image, for its machine.
 struct ImagePiece {
   static constexpr bool isFact = true;
   static constexpr std::uint8_t tag = 24;
@@ -23,7 +23,7 @@ struct ImagePiece {
   std::uint64_t offset = 0;
   std::vector<std::uint8_t> bytes;
 };
-// The answer to ImagePlace and to a last ImagePiece: the task has the pixels, or cannot reach them.
+// The answer to both, when the image is whole: can the task reach its pixels?
 struct ImageTaken {
   static constexpr bool isFact = true;
   static constexpr std::uint8_t tag = 25;

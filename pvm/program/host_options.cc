@@ -75,7 +75,7 @@ std::string applySchedule(HostProgramOptions& o, std::uint32_t hosts, std::uint6
     policy.secondariesTravel = false;
   }
   host.split = o.split == "cost" ? Split::cost : o.split == "equal" ? Split::equal : Split::balanced;
-  policy.shadeLocally = o.shading ? *o.shading == "local" : o.schedule != "data";
+  policy.shadeLocally = !o.shading || *o.shading == "local";
   // Every cluster has somebody to work for.
   if (host.wishes.pyramids > 0) host.wishes.pyramids = std::max(host.wishes.pyramids, host.wishes.clusters);
   if (o.pyramids) host.wishes.pyramids = *o.pyramids;
@@ -132,9 +132,10 @@ void declareHostOptions(CLI::App& app, HostProgramOptions& o) {
   app.add_option("--shadows", o.shadows, "shadow rays: forward, local or auto")
       ->check(CLI::IsMember({"forward", "local", "auto"}))
       ->group(sharing);
-  app.add_option(
-         "--shading", o.shading,
-         "separate: always by shade tasks; local: by the task that found the hit, if nothing of it leaves")
+  app.add_option("--shading", o.shading,
+                 "local: by the task that found the hit, if nothing of it leaves (default); separate: always "
+                 "by shade "
+                 "tasks, as in the paper")
       ->check(CLI::IsMember({"separate", "local"}))
       ->group(sharing);
   app.add_option("--cache", o.cacheMegabytes, "object cache of each task, in MB")

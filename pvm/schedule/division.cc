@@ -10,8 +10,10 @@
 namespace rayshade {
 namespace {
 
-// A cell is what is fetched at a time: small enough to be a part, large enough to be worth a message.
-constexpr std::uint64_t kObjectsPerCell = 8192;
+// A cell is what is fetched at a time: a small part of a cache, and of a scene, and large enough to be worth a message.
+constexpr std::uint64_t kObjectsPerCell = 8192, kLeastObjectsPerCell = 64, kMostCells = 1 << 16;
+constexpr double kCellsPerCache = 32;  // on average; no cell takes more than a sixteenth, as a rule
+constexpr std::uint64_t kCellsPerScene = 32;
 // Where nothing is fetched, cells only say where there is anything.
 constexpr std::uint64_t kObjectsPerBox = 4, kMostBoxes = 4096;
 // Objects in several voxels are held more than once: by measurement no more than this, in parts of all.
@@ -66,6 +68,14 @@ std::vector<Division::Held> expectedOf(const Survey& survey, const Division& div
   return held;
 }
 
+std::uint64_t cellsToFetch(const Survey& survey, std::uint64_t cacheBytes) {
+  const double byCache = kCellsPerCache * static_cast<double>(survey.bytes) /
+                         static_cast<double>(std::max<std::uint64_t>(cacheBytes, 1));
+  const std::uint64_t most = std::min(survey.objects / kLeastObjectsPerCell, kMostCells);
+  const std::uint64_t least = std::max(survey.objects / kObjectsPerCell, kCellsPerScene);
+  return std::min(most, std::max(least, static_cast<std::uint64_t>(std::min(byCache, 1e9))));
+}
+
 std::string megabytes(double bytes) {
   char text[32];
   std::snprintf(text, sizeof text, "%.1f MB", 1e-6 * bytes);
@@ -117,7 +127,7 @@ Division divideSpace(Survey& survey, const FrameRequest& request, const SceneSet
   const auto tasks = static_cast<std::uint32_t>(places.size());
   const std::uint32_t voxels = std::min(tasks * std::max(1u, options.voxelsPerTask), kMaxVoxels);
   const bool fetches = options.wishes.pyramids > 0 || options.policy.shadows != ShadowPolicy::forward;
-  const std::uint64_t bySize = fetches ? std::min<std::uint64_t>(survey.objects / kObjectsPerCell, 1 << 16)
+  const std::uint64_t bySize = fetches ? cellsToFetch(survey, options.policy.cacheBytes)
                                        : std::min<std::uint64_t>(survey.objects / kObjectsPerBox, kMostBoxes);
   const std::uint32_t wanted = options.cells > 0 ? options.cells : static_cast<std::uint32_t>(bySize);
   const std::uint32_t cells = std::max(wanted, voxels);

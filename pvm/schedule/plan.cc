@@ -50,13 +50,23 @@ void addWhole(std::string& text, const Survey& survey) {
   }
 }
 
-// Who traces what, by the policy and by what the scene has.
-void addPolicy(std::string& text, const HostOptions& options, const SceneSettings& settings) {
+// Who traces what, by the policy and by what the scene has.  `tasks`: voxel-trace tasks of a cluster.
+void addPolicy(std::string& text, const HostOptions& options, const SceneSettings& settings,
+               std::uint32_t tasks) {
   const DemandPolicy& policy = options.policy;
+  if (options.wishes.pyramids == 0 && tasks == 1 && policy.shadeLocally) {
+    add(text,
+        "all rays        in tiles of about %u pixels, by a task that holds all that there is, with %s\n",
+        options.tilePixels,
+        options.threads == 0   ? "a thread for each core"
+        : options.threads == 1 ? "one thread"
+                               : (std::to_string(options.threads) + " threads").c_str());
+    return;
+  }
   if (options.wishes.pyramids == 0) {
     add(text, "primary rays    travel from voxel to voxel: no pyramid tasks\n");
   } else {
-    add(text, "primary rays    in pyramids of at most %u, with fetched cells %s\n", options.tilePixels,
+    add(text, "primary rays    in pyramids of about %u pixels, with fetched cells %s\n", options.tilePixels,
         describe(policy.horizon).c_str());
   }
   std::size_t areas = 0, casting = 0;
@@ -119,7 +129,7 @@ std::string describePlan(const std::vector<HostInfo>& hosts, HostOptions options
       : options.split == Split::cost   ? "predicted work"
                                        : "size",
       cellCount(division.tree), clusters, clusters > 1 ? "s" : "");
-  addPolicy(text, options, settings);
+  addPolicy(text, options, settings, perCluster);
   addWhole(text, survey);
 
   add(text, "\n%-21s %-16s %9s %8s  %s\n", "task", "host", "objects", "MB", "why there");

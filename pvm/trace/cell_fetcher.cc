@@ -1,59 +1,112 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pvm/trace/cell_fetcher.h"
 
-#include <numeric>
+#include <algorithm>
 
 namespace rayshade {
 namespace {
 
-// An estimate of a ray on the wire with the answer that comes back: a shadow ray takes 90 to 110 bytes, an answer 14 to 38.
-constexpr double kBytesPerForward = 130;
-// How many pyramids or bundles are expected to use a cell once it is here, if it stays: neighbours go the same way.
+// What a ray that travels costs, with the answer that comes back, in bytes of a fetched model: it takes about 130 bytes on the wire,
+// and as long to pack, queue and unpack as to cut out, take in and index 130 bytes of a model.
+constexpr double kBytesPerTravel = 130;
+// A ray looks into about four cells, and travels once instead.
+constexpr double kBytesPerLook = kBytesPerTravel / 4;
+// How often a cell is expected to be used that finds room.
 constexpr double kExpectedUses = 64;
+// Experience is trusted so far, both ways.
+constexpr double kMostWorth = 16;
+// Before any cell has come: bytes in the cache for a byte on the wire.
+constexpr double kPerWireByte = 4;
 
 }  // namespace
 
 void CellFetcher::begin() {
-  onTheWay_.clear();
+  coming_.clear();
+  comingBytes_ = 0;
+  onTheWay_ = 0;
   queue_.clear();
-  queued_.clear();
+  known_.assign(at_.cellBytes.size(), 0);
+  debts_.assign(at_.cellBytes.size(), 0);
+  perWireByte_ = kPerWireByte;
   cache_.begin(at_.policy.cacheBytes);
-  // What does not fit is thrown out before it has been used as often.
-  const double model = std::accumulate(at_.cellBytes.begin(), at_.cellBytes.end(), 0.0);
-  expectedUses_ =
-      kExpectedUses * std::min(1.0, static_cast<double>(at_.policy.cacheBytes) / std::max(model, 1.0));
+}
+
+double CellFetcher::bytesOf(CellId cell) const {
+  const auto at = static_cast<std::size_t>(cell);
+  return known_[at] > 0 ? known_[at] : perWireByte_ * at_.cellBytes[at];
+}
+
+double CellFetcher::room() const {
+  return static_cast<double>(cache_.mostBytes()) - static_cast<double>(cache_.bytes()) - comingBytes_;
+}
+
+double CellFetcher::price(double bytes, bool eager, double room) const {
+  if (bytes > static_cast<double>(cache_.mostBytes())) return kInfinity;
+  if (bytes <= room) return eager ? 0 : bytes / kExpectedUses;
+  // What is coming must not be thrown out before it is used.
+  if (comingBytes_ > 0 && comingBytes_ + bytes > static_cast<double>(cache_.mostBytes()) / 2)
+    return kInfinity;
+  const ObjectCache::Use& left = cache_.ofThoseThatLeft();
+  const double worth = left.bytes > 0 ? kBytesPerLook * left.rays / left.bytes : 1;
+  return bytes / std::clamp(worth, 1 / kMostWorth, kMostWorth);
+}
+
+bool CellFetcher::missed(CellId cell, std::size_t rays, bool eager) {
+  if (isComing(cell)) return true;
+  float& debt = debts_[static_cast<std::size_t>(cell)];
+  debt += static_cast<float>(kBytesPerTravel * static_cast<double>(rays));
+  if (debt < price(bytesOf(cell), eager, room())) return false;
+  want(cell);
+  return true;
+}
+
+std::size_t CellFetcher::worthAsking(std::span<const CellId> cells, std::size_t rays, bool eager,
+                                     double mostBytes) const {
+  double left = std::min(mostBytes, room());
+  std::size_t n = 0;
+  for (; n < cells.size(); ++n) {
+    if (isHere(cells[n]) || isComing(cells[n])) continue;
+    const double bytes = bytesOf(cells[n]);
+    if (bytes > left || price(bytes, eager, left) > kBytesPerTravel * static_cast<double>(rays)) break;
+    left -= bytes;
+  }
+  return n;
 }
 
 void CellFetcher::want(CellId cell) {
   const auto key = static_cast<std::uint32_t>(cell);
-  if (isHere(cell) || onTheWay_.contains(key) || queued_.contains(key)) return;
+  if (isHere(cell) || isComing(cell)) return;
+  const double bytes = bytesOf(cell);
+  coming_.emplace(key, Coming{bytes, false});
+  comingBytes_ += bytes;
+  debts_[key] = 0;
   queue_.push_back(cell);
-  queued_.insert(key);
   askMore();
 }
 
 void CellFetcher::askMore() {
-  while (!queue_.empty() && onTheWay_.size() < at_.policy.outstanding) {
+  while (!queue_.empty() && onTheWay_ < at_.policy.outstanding) {
     const CellId cell = queue_.front();
     queue_.pop_front();
-    queued_.erase(static_cast<std::uint32_t>(cell));
-    onTheWay_.insert(static_cast<std::uint32_t>(cell));
+    coming_.at(static_cast<std::uint32_t>(cell)).asked = true;
+    ++onTheWay_;
     context_.outbox.post(at_.ownerOf(voxelOfCell(at_.tree, cell)), CellWanted{cell});
   }
 }
 
 bool CellFetcher::arrive(CellItems&& message) {
   const auto key = static_cast<std::uint32_t>(message.cell);
-  if (onTheWay_.erase(key) == 0) return false;
-  cache_.insert(message.cell, std::move(message.items), at_.exposure, at_.cellBytes[key]);
+  const auto found = coming_.find(key);
+  if (found == coming_.end() || !found->second.asked) return false;
+  comingBytes_ = std::max(0.0, comingBytes_ - found->second.bytes);
+  coming_.erase(found);
+  --onTheWay_;
+  const std::size_t bytes =
+      cache_.insert(message.cell, std::move(message.items), at_.exposure, at_.cellBytes[key]);
+  known_[key] = static_cast<std::uint32_t>(std::min<std::size_t>(bytes, 0xffffffffu));
+  perWireByte_ += (static_cast<double>(bytes) / at_.cellBytes[key] - perWireByte_) / 8;
   askMore();
-  cache_.pin(message.cell);
   return true;
-}
-
-bool CellFetcher::fetchingPays(CellId cell, std::size_t rays) const {
-  return at_.cellBytes[static_cast<std::size_t>(cell)] <=
-         kBytesPerForward * expectedUses_ * static_cast<double>(rays);
 }
 
 }  // namespace rayshade

@@ -1,11 +1,18 @@
-// Cells on their way from the tasks that hold them into the object cache (Reinhard & Jansen, section 5).
+// Cells on their way from the tasks that hold them into the object cache (Reinhard & Jansen, section 5), and whether a cell is
+// worth it.
+//
+// Rays that miss a cell run up a debt there: what it costs that they travel.  The cell is fetched when the debt reaches its price, so
+// that fetching never costs more than as much again as travelling.  While there is room in the cache, cells cost a small part of
+// their bytes, as each is expected to be used often, or nothing if objects are to travel.  When others must be thrown out for
+// it, the price is the cell's bytes over what bytes of those that left were worth: cells that leave unused make all cells dear, and
+// then rays travel.
 //
 // At most `outstanding` are asked for at a time; whoever waits for one is kept elsewhere, by cell.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <deque>
-#include <unordered_set>
+#include <unordered_map>
 
 #include "pvm/messages/task_context.h"
 #include "pvm/trace/epoch_settings.h"
@@ -24,23 +31,36 @@ class CellFetcher {
   // Asks for a cell unless it is here, on its way, or empty.
   void want(CellId cell);
   bool isHere(CellId cell) const { return at_.isEmpty(cell) || cache_.contains(cell); }
-  // A cell has come; false: it was not asked for.  It stays in the cache until release(), whatever else comes in.
+  bool isComing(CellId cell) const { return coming_.contains(static_cast<std::uint32_t>(cell)); }
+  // A cell has come; false: it was not asked for.  It is in the cache until the next one comes.
   bool arrive(CellItems&& message);
-  void release(CellId cell) { cache_.unpin(cell); }
 
-  // Is fetching the cell expected to move fewer bytes than sending on so many rays that come to it?
-  bool fetchingPays(CellId cell, std::size_t rays) const;
+  // So many rays have come to a cell that is not here.  Is it on its way now, so that they can wait?  Else they travel.
+  // `eager`: objects are to travel rather than rays.
+  bool missed(CellId cell, std::size_t rays, bool eager);
+  // Would the first cells of a list be asked for if so many rays came to each?  How many; `room`: bytes for all together.
+  std::size_t worthAsking(std::span<const CellId> cells, std::size_t rays, bool eager, double room) const;
 
  private:
+  double bytesOf(CellId cell) const;  // that it takes in the cache: known, or expected
+  double room() const;  // in the cache, when all that is asked for is here                  [bytes]
+  double price(double bytes, bool eager, double room) const;
   void askMore();
 
   TaskContext& context_;
   const EpochSettings& at_;
   ObjectCache& cache_;
-  double expectedUses_ = 0;  // of a fetched cell: the less of the model the cache can hold, the fewer
-  std::unordered_set<std::uint32_t> onTheWay_;
-  std::deque<CellId> queue_;                  // more than may be on their way
-  std::unordered_set<std::uint32_t> queued_;  // in queue_
+  std::vector<std::uint32_t> known_;  // by cell: bytes in the cache; 0: it was never here
+  double perWireByte_ = 0;            // bytes in the cache, of those that came
+  std::vector<float> debts_;          // by cell
+  struct Coming {
+    double bytes = 0;  // bytesOf
+    bool asked = false;
+  };
+  std::unordered_map<std::uint32_t, Coming> coming_;
+  double comingBytes_ = 0;
+  std::size_t onTheWay_ = 0;
+  std::deque<CellId> queue_;  // more than may be on their way
 };
 
 }  // namespace rayshade

@@ -10,7 +10,7 @@ void HitShader::traceLight(std::span<const RayHit> hits) {
   shadeHits(space_, hits, at_.settings, {.sums = false, .records = true}, shaded_, room_, counts_);
 }
 
-ReplyTo HitShader::handOver(ShadedHit& at, const Ray& ray, const ReturnPath& back, const ReplyTo& to) {
+ReplyTo HitShader::handOver(HitLight& at, const Ray& ray, const ReturnPath& back, const ReplyTo& to) {
   expect_.to = replies_.externalReply(to);
   expect_.hit = describe(ray, back, at.point, at.visibility);
   expect_.gathered.light = at.light;

@@ -21,7 +21,7 @@ class HitShader {
   template <class Queue>
   void shade(std::span<const RayHit> hits, std::span<const ReplyTo> to, Queue queue);
   // A shade task takes the hit over.  Says where the colours of its onward rays go.
-  ReplyTo handOver(ShadedHit& at, const Ray& ray, const ReturnPath& back, const ReplyTo& to);
+  ReplyTo handOver(HitLight& at, const Ray& ray, const ReturnPath& back, const ReplyTo& to);
 
  private:
   void traceLight(std::span<const RayHit> hits);

@@ -2,6 +2,11 @@
 #include "pvm/trace/object_cache.h"
 
 namespace rayshade {
+namespace {
+
+constexpr double kRemembered = 0.95;  // what one cell that leaves keeps of those before it
+
+}  // namespace
 
 RegionRef ObjectCache::find(CellId cell, std::size_t rays) {
   counts_.lookups += rays;
@@ -9,52 +14,44 @@ RegionRef ObjectCache::find(CellId cell, std::size_t rays) {
   if (found == cells_.end()) return {};
   counts_.hits += rays;
   Cell& c = *found->second;
+  c.rays += rays;
   order_.splice(order_.begin(), order_, c.place);
   return {&c.model, &c.region};
 }
 
-void ObjectCache::insert(CellId cell, std::vector<Item>&& items, const Exposure& exposure,
-                         std::size_t wireBytes) {
+std::size_t ObjectCache::insert(CellId cell, std::vector<Item>&& items, const Exposure& exposure,
+                                std::size_t wireBytes) {
   const auto key = static_cast<std::uint32_t>(cell);
-  if (cells_.contains(key)) return;
+  if (const auto here = cells_.find(key); here != cells_.end()) return here->second->bytes;
   auto c = std::make_unique<Cell>();
   c->model.take(std::move(items));
   c->model.prepare(exposure);
   const auto objects = c->model.store().objectsOf(kWorld);
   c->region = c->model.regionOf({objects.begin(), objects.end()});
-  c->bytes = sizeof(Cell) + c->model.bytes() + c->region.bytes();
+  const std::size_t bytes = sizeof(Cell) + c->model.bytes() + c->region.bytes();
+  c->bytes = bytes;
+  makeRoomFor(bytes);
   order_.push_front(key);
   c->place = order_.begin();
-  bytes_ += c->bytes;
+  bytes_ += bytes;
   ++counts_.fetched;
   counts_.fetchedBytes += wireBytes;
-  cells_.emplace(key, std::move(c));
-  makeRoom();
   counts_.peakBytes = std::max<std::uint64_t>(counts_.peakBytes, bytes_);
+  cells_.emplace(key, std::move(c));
+  return bytes;
 }
 
-// The cell that came in last is about to be used: it stays.
-void ObjectCache::makeRoom() {
-  for (auto it = order_.end(); bytes_ > mostBytes_ && it != order_.begin();) {
-    --it;
-    if (it == order_.begin()) break;
-    const auto found = cells_.find(*it);
-    if (found->second->pins > 0) continue;
-    bytes_ -= found->second->bytes;
+void ObjectCache::makeRoomFor(std::size_t bytes) {
+  while (!order_.empty() && bytes_ + bytes > mostBytes_) {
+    const auto last = cells_.find(order_.back());
+    const Cell& cell = *last->second;
+    left_.rays = kRemembered * left_.rays + static_cast<double>(cell.rays);
+    left_.bytes = kRemembered * left_.bytes + static_cast<double>(cell.bytes);
+    bytes_ -= cell.bytes;
     ++counts_.evicted;
-    cells_.erase(found);
-    it = order_.erase(it);
+    cells_.erase(last);
+    order_.pop_back();
   }
-}
-
-void ObjectCache::pin(CellId cell) {
-  if (const auto found = cells_.find(static_cast<std::uint32_t>(cell)); found != cells_.end())
-    ++found->second->pins;
-}
-void ObjectCache::unpin(CellId cell) {
-  if (const auto found = cells_.find(static_cast<std::uint32_t>(cell)); found != cells_.end())
-    --found->second->pins;
-  makeRoom();
 }
 
 }  // namespace rayshade

@@ -57,30 +57,22 @@ void PyramidTask::flush() {
 
 // ---- a pyramid and its cells
 
-// How many cells of a list are fetched; any number gives the same picture.
-std::size_t PyramidTask::beforeHorizon(const std::vector<CellId>& cells, std::size_t rays) const {
+// How many cells of a list are fetched; any number gives the same picture.  What does not fit with what other tiles wait for is
+// left to the rays that come to it.
+std::size_t PyramidTask::beforeHorizon(std::span<const CellId> cells, std::size_t rays) const {
   const EpochSettings& at = unit_.at;
   const Horizon& horizon = at.policy.horizon;
   std::size_t n = 0;
-  std::uint64_t bytes = 0;
-  for (; n < cells.size(); ++n) {
-    const CellId cell = cells[n];
-    switch (horizon.kind) {
-      case Horizon::Kind::cells:
-        if (static_cast<double>(n) >= horizon.value) return n;
-        break;
-      case Horizon::Kind::distance:
-        if (distanceTo(boundsOf(at.tree, cell), at.request.view.eye) > horizon.value) return n;
-        break;
-      case Horizon::Kind::automatic:
-        // The cells of all pyramids in hand stay in the cache until they have been traced.
-        bytes += at.cellBytes[static_cast<std::size_t>(cell)];
-        if (bytes > at.policy.cacheBytes / TraceUnit::kAhead) return n;
-        if (!unit_.cells.isHere(cell) && !unit_.cells.fetchingPays(cell, rays)) return n;
-        break;
-    }
+  if (horizon.kind == Horizon::Kind::cells) {
+    n = static_cast<std::size_t>(std::min(horizon.value, static_cast<double>(cells.size())));
+  } else if (horizon.kind == Horizon::Kind::distance) {
+    while (n < cells.size() && distanceTo(boundsOf(at.tree, cells[n]), at.request.view.eye) <= horizon.value)
+      ++n;
+  } else {
+    n = cells.size();
   }
-  return n;
+  return unit_.cells.worthAsking(cells.first(n), rays, horizon.kind != Horizon::Kind::automatic,
+                                 static_cast<double>(at.policy.cacheBytes) / TraceUnit::kAhead);
 }
 
 void PyramidTask::on(TaskId, TileWork message) {
@@ -95,12 +87,7 @@ void PyramidTask::on(TaskId, TileWork message) {
   open.cells.resize(beforeHorizon(open.cells, static_cast<std::size_t>(tile.width * tile.height)));
   std::erase_if(open.cells, [this](CellId cell) { return unit_.at.isEmpty(cell); });
   unit_.tiles.add(
-      message.number, std::move(open),
-      [this](CellId cell) {
-        const bool here = unit_.cache.contains(cell);
-        if (here) unit_.cache.pin(cell);
-        return here;
-      },
+      message.number, std::move(open), [this](CellId cell) { return unit_.cache.contains(cell); },
       [this](CellId cell) { unit_.cells.want(cell); });
   context_.notePeak(unit_.tiles.size() + unit_.shadows.waiting());
 }
@@ -129,15 +116,14 @@ void PyramidTask::on(TaskId, CellItems message) {
     return;
   }
   unit_.shadows.resume(cell);
-  unit_.tiles.arrive(cell, [&] { unit_.cache.pin(cell); });
+  unit_.tiles.arrive(cell, [] {});
   if (const auto waiting = waitingForCell_.find(static_cast<std::uint32_t>(cell));
       waiting != waitingForCell_.end()) {
     RayBundle rays = std::move(waiting->second);
     waitingForCell_.erase(waiting);
-    // The cell is here now and may be gone later: each ray passes it at once.
+    // The cell is here now and gone when others come: each ray passes it at once.
     while (!rays.empty()) traceWaiting(rays);
   }
-  unit_.cells.release(cell);
 }
 
 // ---- rays
@@ -159,9 +145,7 @@ bool PyramidTask::traceSome() {
                             goOn(std::move(ray), next, to);
                           });
   }
-  unit_.sendTiles(host_, [this](const std::vector<CellId>& cells) {
-    for (CellId cell : cells) unit_.cache.unpin(cell);
-  });
+  unit_.sendTiles(host_, [](const std::vector<CellId>&) {});
   return any;
 }
 
@@ -177,7 +161,7 @@ void PyramidTask::traceWaiting(RayBundle& from) {
 
 // A ray that begins at a hit: to the voxel where it begins, or into the own queue.
 void PyramidTask::queue(Ray&& ray, const ReplyTo& to) {
-  if (!unit_.at.policy.secondariesTravel) {
+  if (objectsTravel()) {
     rays_.add(std::move(ray), 0, to);
     return;
   }
@@ -187,14 +171,13 @@ void PyramidTask::queue(Ray&& ray, const ReplyTo& to) {
   unit_.replies.forward(unit_.at.ownerOf(first.where), std::move(ray), 0, to);
 }
 
-// A ray that needs what is not at hand: behind the horizon demand driven becomes data driven.
+// A ray that needs what is not at hand: behind the horizon, or where fetching does not pay, demand driven becomes data driven.
 void PyramidTask::goOn(Ray&& ray, const NextBlock& next, const ReplyTo& to) {
-  if (unit_.at.policy.secondariesTravel) {
+  if (unit_.cells.missed(next.cell, 1, objectsTravel()) && objectsTravel()) {
+    waitingForCell_[static_cast<std::uint32_t>(next.cell)].add(std::move(ray), next.tEnter, to);
+  } else {
     unit_.replies.forward(unit_.at.ownerOf(next.voxel), std::move(ray), next.step, to);
-    return;
   }
-  unit_.cells.want(next.cell);
-  waitingForCell_[static_cast<std::uint32_t>(next.cell)].add(std::move(ray), next.tEnter, to);
 }
 
 }  // namespace rayshade

@@ -3,8 +3,8 @@
 // Demand driven: it asks the host for work.  A tile is one pyramid of primary rays; its clip-list says which cells of the
 // bin-tree it may touch, near to far, without any object.  The cells up to the horizon are fetched into the object cache -
 // while they come, other pyramids are worked on - and then the rays are traced, with all that go on from their hits, as far as
-// what is at hand allows.  Rays that need more go over to the data-parallel voxels, or, if nothing but objects travels, wait
-// for the cell that they miss.
+// what is at hand allows.  Rays that need more go over to the data-parallel voxels, or, if objects are to travel and that pays, wait for
+// the cell that they miss.
 //
 // A camera with a lens has no common apex: then the list is the union of the walks of the rays.
 // SPDX-License-Identifier: BSD-3-Clause
@@ -41,7 +41,8 @@ class PyramidTask {
   void on(TaskId from, const ImagePiece& message) { unit_.images.take(from, message, context_); }
 
  private:
-  std::size_t beforeHorizon(const std::vector<CellId>& cells, std::size_t rays) const;
+  bool objectsTravel() const { return !unit_.at.policy.secondariesTravel; }
+  std::size_t beforeHorizon(std::span<const CellId> cells, std::size_t rays) const;
   bool traceSome();
   void traceWaiting(RayBundle& rays);
   void queue(Ray&& ray, const ReplyTo& to);

@@ -17,16 +17,20 @@ void ShadowBundles::sendOn(const ShadowHead& head, std::span<PendingShadow> pend
   batch_.post(context_.outbox);
 }
 
+// Can rays wait for the cell that they miss?  Else they travel.
+bool ShadowBundles::waitsFor(CellId missing, std::size_t rays) {
+  const ShadowPolicy policy = at_.policy.shadows;
+  return policy != ShadowPolicy::forward && cells_.missed(missing, rays, policy == ShadowPolicy::local);
+}
+
 // Of one light: decide, for the bundle as a whole, what to do.
 void ShadowBundles::sendOn(std::span<PendingShadow> pending, const ShadowHead& head,
                            const LightSource& light) {
   const CellId missing = pending[0].next.cell;
-  const ShadowPolicy policy = at_.policy.shadows;
-  if (policy == ShadowPolicy::local ||
-      (policy == ShadowPolicy::automatic && cells_.fetchingPays(missing, pending.size()))) {
+  if (waitsFor(missing, pending.size())) {
     Bundle bundle{head, {}};
     for (PendingShadow& p : pending)
-      bundle.rays.push_back({std::move(p.shadow), static_cast<Slot>(p.row), p.next.tEnter});
+      bundle.rays.push_back({std::move(p.shadow), static_cast<Slot>(p.row), p.next});
     park(std::move(bundle), missing, &light);
     return;
   }
@@ -35,13 +39,14 @@ void ShadowBundles::sendOn(std::span<PendingShadow> pending, const ShadowHead& h
 }
 
 void ShadowBundles::park(Bundle&& bundle, CellId missing, const LightSource* light) {
-  // A light pyramid asks for all that it may need at once; cells of held voxels are no use to it.
-  const AreaLight* area = light == nullptr ? nullptr : std::get_if<AreaLight>(&light->kind);
-  cells_.want(missing);
-  if (area != nullptr) {
+  // A light pyramid asks for all that it may need at once, if there is room; cells of held voxels are no use to it.
+  if (const AreaLight* area = light == nullptr ? nullptr : std::get_if<AreaLight>(&light->kind)) {
     const Vec3 apex = bundle.rays.front().shadow.ray.origin;
-    for (CellId cell : clipList(at_.tree, pyramidTo(apex, area->corner, area->edgeU, area->edgeV)))
-      if (!space_.blocks().held(voxelOfCell(at_.tree, cell))) cells_.want(cell);
+    std::vector<CellId> cells = clipList(at_.tree, pyramidTo(apex, area->corner, area->edgeU, area->edgeV));
+    std::erase_if(cells, [&](CellId cell) { return space_.blocks().held(voxelOfCell(at_.tree, cell)); });
+    cells.resize(cells_.worthAsking(cells, bundle.rays.size(), at_.policy.shadows == ShadowPolicy::local,
+                                    static_cast<double>(at_.policy.cacheBytes)));
+    for (const CellId cell : cells) cells_.want(cell);
   }
   parked_[static_cast<std::uint32_t>(missing)].push_back(std::move(bundle));
   context_.notePeak(++waiting_);
@@ -56,7 +61,7 @@ void ShadowBundles::resume(CellId cell) {
   for (Bundle& bundle : bundles) goOn(std::move(bundle));
 }
 
-// Those rays that miss something again wait for it together.
+// Those rays that miss something again wait for it together, or travel.
 void ShadowBundles::goOn(Bundle&& bundle) {
   std::map<std::uint32_t, Bundle> missing;  // by cell
   answers_.record = bundle.head.record;
@@ -70,7 +75,7 @@ void ShadowBundles::goOn(Bundle&& bundle) {
     for (std::size_t i = 0; i < rays.size(); ++i) {
       const ShadowRay& shadow = rays[i].shadow;
       segments[i] = Segment(shadow.ray, shadow.last, shadow.distance);
-      begin[i] = rays[i].begin;
+      begin[i] = rays[i].next.tEnter;
       through[i] = shadow.through;
     }
     traceShadows(space_, std::span(segments).first(rays.size()), begin, at_.settings, through, open_, counts_,
@@ -81,13 +86,22 @@ void ShadowBundles::goOn(Bundle&& bundle) {
       Bundle& again =
           missing.try_emplace(static_cast<std::uint32_t>(open.next->cell), Bundle{bundle.head, {}})
               .first->second;
-      again.rays.push_back({std::move(open.shadow), rays[open.index].slot, open.next->tEnter});
+      again.rays.push_back({std::move(open.shadow), rays[open.index].slot, *open.next});
     }
     for (std::size_t i = 0; i < rays.size(); ++i)
       if ((going >> i & 1) == 0) answers_.colors.push_back({rays[i].slot, through[i]});
   }
   if (!answers_.colors.empty()) context_.outbox.post(bundle.head.shader, answers_);
-  for (auto& [cell, rest] : missing) park(std::move(rest), CellId{cell}, nullptr);
+  batch_.begin(bundle.head);
+  for (auto& [cell, rest] : missing) {
+    if (waitsFor(CellId{cell}, rest.rays.size())) {
+      park(std::move(rest), CellId{cell}, nullptr);
+      continue;
+    }
+    for (const Parked& ray : rest.rays)
+      batch_.add(at_.ownerOf(ray.next.voxel), travelOf(ray.shadow, ray.slot, ray.next.step));
+  }
+  batch_.post(context_.outbox);
 }
 
 void ShadowBundles::follow(std::span<const Visitors> visitors) {

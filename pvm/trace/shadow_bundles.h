@@ -1,8 +1,8 @@
 // Shadow rays that need what is not local (Reinhard & Jansen, section 5).
 //
-// What comes after the own voxels is decided by the policy: `forward` sends the rays to the task of the next voxel, `local`
-// fetches the missing cells into the object cache and goes on when they have come, `automatic` does what is expected to move
-// fewer bytes.  All shadow rays from one hit to one area light are one bundle, the light pyramid: it waits as a whole, and the
+// What comes after the own voxels is decided by the policy: `forward` sends the rays to the task of the next voxel; else missing
+// cells are fetched into the object cache if that pays (cell_fetcher.h) and the rays go on when they have come.  `local`: it pays as
+// long as there is room.  All shadow rays from one hit to one area light are one bundle, the light pyramid: it waits as a whole, and the
 // cells on its clip-list are asked for together.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
@@ -71,7 +71,7 @@ class ShadowBundles {
   };
   // Takes them through what is local, and sends on or answers each.
   void follow(std::span<const Visitors> visitors);
-  // A cell is here, and pinned: what waits for it goes on.
+  // A cell is here: what waits for it goes on.
   void resume(CellId cell);
 
   std::size_t waiting() const { return waiting_; }
@@ -80,13 +80,14 @@ class ShadowBundles {
   struct Parked {
     ShadowRay shadow;
     Slot slot = 0;
-    double begin = 0;  // before this t nothing counts that is not local
+    NextBlock next{};  // what it misses; before that all has been looked at
   };
   struct Bundle {  // of one light and one hit
     ShadowHead head;
     std::vector<Parked> rays;
   };
   void sendOn(std::span<PendingShadow> pending, const ShadowHead& head, const LightSource& light);
+  bool waitsFor(CellId missing, std::size_t rays);
   void park(Bundle&& bundle, CellId missing, const LightSource* light);
   void goOn(Bundle&& bundle);
 

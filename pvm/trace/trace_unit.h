@@ -112,9 +112,13 @@ void TraceUnit::traceTrees(std::span<Ray> rays, std::span<const double> begin, s
   };
   for (std::size_t h = open_.hits.size(); h-- > 0;) {
     OpenEnds::OpenHit& hit = open_.hits[h];
-    const bool lit = hit.shaded.pending.empty();
-    replyOf_[h] = lit ? replies.await(hit.shaded.sum, hit.back, replyTo(hit.to))
-                      : shader.handOver(hit.shaded, hit.ray, hit.back, replyTo(hit.to));
+    const ReplyTo up = replyTo(hit.to);
+    if (hit.unlit == OpenEnds::kLit) {
+      replyOf_[h] = replies.await(hit.sum, hit.back, up);
+    } else {
+      OpenEnds::UnlitHit& unlit = open_.unlit[hit.unlit];
+      replyOf_[h] = shader.handOver(unlit.light, unlit.ray, hit.back, up);
+    }
     if (hit.transmitted) replies.answer(slotOf(replyOf_[h], OpenEnds::Branch::transmitted), *hit.transmitted);
     if (hit.reflected) replies.answer(slotOf(replyOf_[h], OpenEnds::Branch::reflected), *hit.reflected);
   }

@@ -71,7 +71,6 @@ void VoxelTask::on(TaskId, CellItems message) {
     return;
   }
   unit_.shadows.resume(cell);
-  unit_.cells.release(cell);
 }
 
 void VoxelTask::on(TaskId from, Finish) {

@@ -16,8 +16,7 @@ namespace rayshade {
 class VoxelTask {
  public:
   using Accepted = TypeList<Forget, Items, Configure, Finish, Ping, Weights, PrimaryRays, TileWork, RayTask,
-                            ShadowTask, CellWanted, CellItems, Answer,
-                            ImagePlace, ImagePiece>;
+                            ShadowTask, CellWanted, CellItems, Answer, ImagePlace, ImagePiece>;
 
   explicit VoxelTask(Link& link)
       : context_(link), unit_(context_, &share_), jobs_(context_, unit_.at, unit_.space) {}

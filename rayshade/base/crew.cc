@@ -2,6 +2,7 @@
 #include "rayshade/base/crew.h"
 
 #include <csignal>
+#include <system_error>
 #include <utility>
 
 namespace rayshade {
@@ -12,7 +13,11 @@ Crew::Crew(unsigned size, std::function<void()> told) : told_(std::move(told)) {
   sigset_t all, before;
   sigfillset(&all);
   pthread_sigmask(SIG_SETMASK, &all, &before);
-  for (unsigned worker = 1; worker < size; ++worker) threads_.emplace_back([this, worker] { serve(worker); });
+  try {
+    for (unsigned worker = 1; worker < size; ++worker)
+      threads_.emplace_back([this, worker] { serve(worker); });
+  } catch (const std::system_error&) {  // no memory for another stack, or too many threads
+  }
   pthread_sigmask(SIG_SETMASK, &before, nullptr);
 }
 

@@ -20,7 +20,7 @@ class Crew {
   // `worker`: 0 is the owner, then 1 .. size() - 1; no two jobs of one worker are done at a time.
   using Job = std::function<void(unsigned worker)>;
 
-  // `size`: threads, with the owner's; at least one.  `told` is called after each job, by whoever has done it.
+  // `size`: threads, with the owner's; at least one.  There are fewer when the system gives no more.  `told` is called after each job, by whoever has done it.
   explicit Crew(unsigned size, std::function<void()> told = {});
   // Ends when the jobs that have begun are done; the others are dropped.
   ~Crew();

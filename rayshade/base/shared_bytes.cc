@@ -39,9 +39,8 @@ MappedBytes mapShared(const SharedPlace& place, std::uint64_t size) {
     at = mmap(nullptr, size, PROT_READ, MAP_SHARED, descriptor, static_cast<off_t>(place.offset));
   close(descriptor);
   if (at == MAP_FAILED) return nullptr;
-  return MappedBytes(static_cast<const std::uint8_t*>(at), [size](const std::uint8_t* bytes) {
-    munmap(const_cast<std::uint8_t*>(bytes), size);
-  });
+  return MappedBytes(static_cast<const std::uint8_t*>(at),
+                     [size](const std::uint8_t* bytes) { munmap(const_cast<std::uint8_t*>(bytes), size); });
 }
 
 void readShared(const SharedPlace& place, std::span<std::uint8_t> to) {

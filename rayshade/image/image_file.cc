@@ -18,7 +18,8 @@ constexpr std::size_t kLargestFile = std::size_t{1} << 31;
 // From levels to the pixels of an image.
 class ImageRows final : public RasterRows {
  public:
-  ImageRows(SharedBytes& to, std::function<void(std::size_t)> written) : to_(to), written_(std::move(written)) {}
+  ImageRows(SharedBytes& to, std::function<void(std::size_t)> written)
+      : to_(to), written_(std::move(written)) {}
 
   void begin(const RasterSize& size) override {
     size_ = size;
@@ -27,8 +28,9 @@ class ImageRows final : public RasterRows {
     image.channels = size.channels;
     image.place = to_.begin();
     pixels_.resize(size.rowLevels());
-    hash_ = mixBits(mixBits(static_cast<std::uint64_t>(size.width)) + static_cast<std::uint64_t>(size.height)) +
-            static_cast<std::uint64_t>(size.channels) + (size.textureUpsideDown ? 8 : 0);
+    hash_ =
+        mixBits(mixBits(static_cast<std::uint64_t>(size.width)) + static_cast<std::uint64_t>(size.height)) +
+        static_cast<std::uint64_t>(size.channels) + (size.textureUpsideDown ? 8 : 0);
   }
   void row(std::span<const std::uint16_t> levels) override {
     if (size_.most == 255) {

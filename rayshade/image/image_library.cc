@@ -10,8 +10,7 @@ namespace rayshade {
 std::variant<std::shared_ptr<const Image>, FileProblem> ImageLibrary::read(const std::string& fileName) {
   struct stat status {};
   if (stat(fileName.c_str(), &status) != 0) status = {};
-  const std::int64_t changed =
-      std::int64_t{status.st_mtim.tv_sec} * 1'000'000'000 + status.st_mtim.tv_nsec;
+  const std::int64_t changed = std::int64_t{status.st_mtim.tv_sec} * 1'000'000'000 + status.st_mtim.tv_nsec;
   const auto size = static_cast<std::uint64_t>(status.st_size);
   Entry& entry = entries_[fileName];
   if (entry.image && entry.changed == changed && entry.size == size) return entry.image;

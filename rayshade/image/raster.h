@@ -45,8 +45,8 @@ struct Raster : RasterSize {
 inline std::size_t countLevels(const RasterSize& size, std::size_t most, const std::string& name) {
   const std::size_t count = size.rowLevels() * static_cast<std::size_t>(size.height);
   if (count > most)
-    failOn(name, "too short for " + std::to_string(size.width) + " by " + std::to_string(size.height) +
-                     " pixels");
+    failOn(name,
+           "too short for " + std::to_string(size.width) + " by " + std::to_string(size.height) + " pixels");
   return count;
 }
 

@@ -11,8 +11,7 @@ namespace rayshade {
 class ObjectParser {
  public:
   // `flipNormals`: of the shapes that can turn them.
-  ObjectParser(Tokens& tokens, FaultLog& log, SceneSink& sink, ImageLibrary& images,
-               bool flipNormals)
+  ObjectParser(Tokens& tokens, FaultLog& log, SceneSink& sink, ImageLibrary& images, bool flipNormals)
       : tokens_(tokens),
         log_(log),
         items_(sink),

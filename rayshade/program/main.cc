@@ -36,6 +36,7 @@ void writeReport(std::FILE* to, const Scene& scene, const FrameResult& result, c
   line("all rays", all);
   line("hits", c.hits);
   line("supersampled pixels", result.samples.supersampled);
+  line("samples in vain", result.samples.given - std::min(result.samples.given, result.samples.needed));
   std::fprintf(to, "%-24s %12.2f\n", "object tests per ray",
                static_cast<double>(c.tests) / static_cast<double>(std::max<std::uint64_t>(all, 1)));
   line("objects", scene.model.store().objectCount());

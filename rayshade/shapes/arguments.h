@@ -30,7 +30,7 @@ class Arguments {
   virtual std::string inputFile() = 0;             // takes the name of a file to be read: where it is found
   // The picture in the file whose name comes next; it fails if it cannot be read.
   virtual std::shared_ptr<const Image> inputImage() = 0;
-  virtual Surface surface() = 0;                   // a surface-spec: a name, cursurf, components
+  virtual Surface surface() = 0;  // a surface-spec: a name, cursurf, components
   // Something is odd but the scene goes on (`file:line: warning: ...`).
   virtual void warn(const std::string& message) = 0;
   // The statement is wrong; does not return.

@@ -28,18 +28,22 @@ struct PendingShadow {
   NextBlock next;
 };
 
-// What has become of a hit.
-struct ShadedHit {
-  const Ray* ray = nullptr;
-  double t = 0;
+// What is known of the light at a hit.
+struct HitLight {
   SurfacePoint point;
-  Facing facing;
   Color sum;  // ambient light and all lights, if they were added and nothing is pending
-  OnwardRays onward;
   // Kept only if that is asked for: by row of light points, what each is to the hit and what of it is let through.
   LightVisibilities visibility;
   InlineVector<Color, 4> light;
   std::vector<PendingShadow> pending;  // in the order of the light loop
+};
+
+// What has become of a hit.
+struct ShadedHit : HitLight {
+  const Ray* ray = nullptr;
+  double t = 0;
+  Facing facing;
+  OnwardRays onward;
 };
 
 // What is to be found out.

@@ -26,7 +26,7 @@ struct Tracer::Level {
     Color sum;                 // of the lights
     ReturnPath back;
     Expected transmitted, reflected;
-    std::uint32_t unlit = Expected::kNothing;  // in `unlit`, if light is pending
+    std::uint32_t unlit = OpenEnds::kLit;  // of the open ends, if light is pending
   };
   // Rays that go on from hits, and where what they see goes.
   struct OnwardBundle {
@@ -46,7 +46,6 @@ struct Tracer::Level {
 
   std::vector<WaitingHit> hits;
   OnwardBundle transmitted, reflected;
-  std::vector<OpenEnds::OpenHit> unlit;
 };
 
 Tracer::Tracer(LocalSpace& space, const SceneSettings& settings, TraceCounts& counts)
@@ -62,7 +61,6 @@ Tracer::Level& Tracer::level(std::size_t depth) {
 void Tracer::shade(std::span<const Ray> rays, std::span<const double> begin, std::span<Expected* const> goals,
                    Level& level, OpenEnds& open) {
   level.hits.clear();
-  level.unlit.clear();
   traceRays(space_, rays, begin, found_, counts_);
   std::size_t count = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -88,28 +86,24 @@ void Tracer::shade(std::span<const Ray> rays, std::span<const double> begin, std
     level.transmitted.add(at.onward.transmitted, &waiting.transmitted);
     level.reflected.add(at.onward.reflected, &waiting.reflected);
     if (at.pending.empty()) continue;
-    waiting.unlit = static_cast<std::uint32_t>(level.unlit.size());
-    level.unlit.push_back({*at.ray, at, waiting.back, {}, {}, {}});
+    waiting.unlit = static_cast<std::uint32_t>(open.unlit.size());
+    open.unlit.push_back({*at.ray, std::move(static_cast<HitLight&>(at))});
   }
 }
 
 // The colours of hits that have all of their own; the others are open ends.
 void Tracer::finishHits(Level& level, OpenEnds& open) {
   for (Level::WaitingHit& hit : level.hits) {
-    const bool lit = hit.unlit == Expected::kNothing;
-    if (lit && !hit.transmitted.isOpen() && !hit.reflected.isOpen()) {
+    if (hit.unlit == OpenEnds::kLit && !hit.transmitted.isOpen() && !hit.reflected.isOpen()) {
       hit.goal->color = finish(hit.sum, hit.back, hit.transmitted.color, hit.reflected.color, settings_);
       continue;
     }
     const auto number = static_cast<std::uint32_t>(open.hits.size());
     hit.goal->hit = number;
     OpenEnds::OpenHit& end = open.hits.emplace_back();
-    if (lit) {
-      end.shaded.sum = hit.sum;
-      end.back = hit.back;
-    } else {
-      end = std::move(level.unlit[hit.unlit]);
-    }
+    end.sum = hit.sum;
+    end.back = hit.back;
+    end.unlit = hit.unlit;
     const auto expect = [&](const Expected& expected, bool wanted, OpenEnds::Branch branch,
                             std::optional<Color>& known) {
       expected.link(open, {number, 0, branch});

@@ -17,7 +17,7 @@ namespace rayshade {
 
 // What of the trees of a bundle could not be finished.
 struct OpenEnds {
-  static constexpr std::uint32_t kBundle = 0xffffffffu;
+  static constexpr std::uint32_t kBundle = 0xffffffffu, kLit = 0xffffffffu;
   enum class Branch : std::uint8_t { transmitted, reflected };
   // Who waits for a colour: a hit, or the bundle.
   struct Waiting {
@@ -31,18 +31,25 @@ struct OpenEnds {
     Waiting to;
   };
   struct OpenHit {
-    Ray ray;           // that hit; only if light is pending
-    ShadedHit shaded;  // its light so far; without onward rays
+    Color sum;  // of the lights, unless some light is pending
     ReturnPath back;
     std::optional<Color> transmitted, reflected;  // that are known
     Waiting to;
+    std::uint32_t unlit = kLit;  // in `unlit`, if light is pending
+  };
+  // A hit some of whose light is pending, and the ray that hit.
+  struct UnlitHit {
+    Ray ray;
+    HitLight light;
   };
   std::vector<OpenRay> rays;
   std::vector<OpenHit> hits;  // whoever waits stands behind those for whom it waits
+  std::vector<UnlitHit> unlit;
 
   void clear() {
     rays.clear();
     hits.clear();
+    unlit.clear();
   }
 };
 

@@ -26,8 +26,7 @@ struct Splitting {
 std::ostream& operator<<(std::ostream& out, const Splitting& s) {
   return out << "--voxels " << s.voxelTasks << " --voxels-per-task " << s.voxelsPerTask << " --shades "
              << s.shades << " --window " << s.window << " --pyramids " << s.pyramids << " --clusters "
-             << s.clusters << " --split " << static_cast<int>(s.by) << ", delivery seed "
-             << s.delivery;
+             << s.clusters << " --split " << static_cast<int>(s.by) << ", delivery seed " << s.delivery;
 }
 
 Splitting randomSplit(std::uint64_t seed) {
@@ -66,6 +65,46 @@ void expectSameWork(const TraceCounts& sequential, const TraceCounts& tasks) {
   EXPECT_EQ(tasks.shadowRays, sequential.shadowRays);
   EXPECT_EQ(tasks.reflectedRays, sequential.reflectedRays);
   EXPECT_EQ(tasks.transmittedRays, sequential.transmittedRays);
+}
+
+TEST(Equivalence, AnyNumberOfThreadsGivesTheSameBits) {
+  const std::uint64_t seeds = seedCount(40);
+  for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+    SCOPED_TRACE("scene seed " + std::to_string(seed));
+    const Job job = jobOfText(randomScene(seed));
+    const Rendered one = renderSequentially(job);
+    for (const unsigned threads : {2u, 3u, 7u}) {
+      const Rendered several = renderSequentially(job, 1, threads);
+      ASSERT_EQ(difference(several.frames, one.frames), "") << threads << " threads";
+      expectSameWork(several.counts, one.counts);
+    }
+  }
+}
+
+// Tasks that hold all of the scene trace tiles with all threads that they have; some of them die.
+TEST(Equivalence, ThreadsOfTasksGiveTheSameBitsAfterDeaths) {
+  const std::uint64_t seeds = seedCount(40);
+  int deaths = 0;
+  std::uint64_t tiles = 0;
+  for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+    SCOPED_TRACE("scene seed " + std::to_string(seed));
+    const Job job = jobOfText(randomScene(seed));
+    HostOptions host;
+    host.wishes.voxels = 1;
+    host.wishes.shades = 0;
+    host.wishes.clusters = 1 + static_cast<std::uint32_t>(seed % 3);
+    host.policy.shadeLocally = true;
+    host.threads = 0;
+    host.tilePixels = 64;
+    const RenderedByTasks got = renderByTasks(
+        job, host,
+        {.seed = seed, .cores = 1 + static_cast<unsigned>(seed % 4), .movesPerDeath = 60, .mostDeaths = 3});
+    ASSERT_EQ(difference(got.frames, renderSequentially(job).frames), "");
+    deaths += got.deaths;
+    for (const TaskSummary& task : got.summary.tasks) tiles += task.report.pyramids;
+  }
+  EXPECT_GT(deaths, 10);
+  EXPECT_GT(tiles, 5 * seeds);
 }
 
 TEST(Equivalence, RandomScenesHaveTheSameBitsHoweverTheyAreSplit) {

@@ -26,14 +26,20 @@ class Images : public testing::Test {
         "screen 12 12 eyep 0 -8 3 lookp 0 0 0 fov 40\n"
         "light 1 directional 1 -1 1 light .5 point -3 -5 6\n"
         "surface w diffuse .8 .8 .8 specular .3 .3 .3 reflect .3\n"
-        "name both grid 2 1 1 sphere w 1 1 0 0" + image + " map spherical sphere w 1 -1 0 0 end\n"
+        "name both grid 2 1 1 sphere w 1 1 0 0" +
+        image +
+        " map spherical sphere w 1 -1 0 0 end\n"
         "object both translate 0 1 0 object both scale .7 .7 .7 translate 1 -2 0\n"
-        "sphere w 1 -2 -1 1" + image + " component body smooth\n"
-        "box w -4 -4 -1.5 4 4 -1.2" + image + " map planar\n");
+        "sphere w 1 -2 -1 1" +
+        image +
+        " component body smooth\n"
+        "box w -4 -4 -1.5 4 4 -1.2" +
+        image + " map planar\n");
     job_.options.samples = 1;  // the work takes far fewer bytes than the pixels
     expected_ = renderSequentially(job_).frames;
   }
-  RenderedByTasks render(std::uint32_t pyramids, ShadowPolicy shadows, const SimulatedMachine::Options& machine) {
+  RenderedByTasks render(std::uint32_t pyramids, ShadowPolicy shadows,
+                         const SimulatedMachine::Options& machine) {
     HostOptions host;
     host.wishes.voxels = 4;
     host.wishes.pyramids = pyramids;
@@ -49,7 +55,8 @@ class Images : public testing::Test {
 TEST_F(Images, LieOnceOnEachMachineWithTheSameBitsInAllSchedules) {
   for (const std::uint32_t pyramids : {0u, 3u})
     for (const ShadowPolicy shadows : {ShadowPolicy::forward, ShadowPolicy::local}) {
-      SCOPED_TRACE(std::to_string(pyramids) + " pyramids, shadows " + std::to_string(static_cast<int>(shadows)));
+      SCOPED_TRACE(std::to_string(pyramids) + " pyramids, shadows " +
+                   std::to_string(static_cast<int>(shadows)));
       SimulatedMachine::Options machine;
       machine.hosts = {{"a", 1000}, {"b", 1000}, {"c", 1000}};
       const RenderedByTasks got = render(pyramids, shadows, machine);

@@ -20,7 +20,7 @@ constexpr double kPatience = 120;  // seconds, for a loaded machine or slow sani
 constexpr int kSide = 4096;
 constexpr const char* kShort = " -S 1 -R 200 200";
 constexpr const char* kLong = " -S 3 -R 600 600";  // for somebody to die in the middle of it
-constexpr double kPixels = 3.0 * kSide * kSide;  // bytes
+constexpr double kPixels = 3.0 * kSide * kSide;    // bytes
 
 class PvmImages : public testing::Test {
  protected:
@@ -44,8 +44,7 @@ class PvmImages : public testing::Test {
                              "plane w 0 0 -1 0 0 1\n";
   }
   std::vector<std::string> words(const std::string& program, const std::string& picture) const {
-    std::istringstream in(programDirectory() + "/" + program + " -O " + (scratch_ / picture) + " " +
-                          scene_);
+    std::istringstream in(programDirectory() + "/" + program + " -O " + (scratch_ / picture) + " " + scene_);
     return {std::istream_iterator<std::string>(in), {}};
   }
   Program::Environment environment() const { return {{"PVM_TMP", scratch_ / "pvm"}, {"PVM_VMID", "test"}}; }
@@ -66,7 +65,8 @@ std::vector<std::vector<std::string>> rowsOf(const std::string& table) {
   std::istringstream in(table);
   for (std::string line; std::getline(in, line);) {
     std::istringstream fields(line);
-    if (!line.starts_with('#')) rows.emplace_back(std::istream_iterator<std::string>(fields), std::istream_iterator<std::string>{});
+    if (!line.starts_with('#'))
+      rows.emplace_back(std::istream_iterator<std::string>(fields), std::istream_iterator<std::string>{});
   }
   return rows;
 }
@@ -76,7 +76,8 @@ TEST_F(PvmImages, AreHeldByNoProgramAndSentToNobodyOnTheSameMachine) {
   for (const char* schedule : {"--schedule data --voxels 4", "--schedule hybrid", "--schedule demand", ""}) {
     SCOPED_TRACE(schedule);
     const Finished done =
-        run(std::string("rayshade-host -q --table ") + (scratch_ / "table.tsv") + " " + schedule + kShort, "tasks.pfm");
+        run(std::string("rayshade-host -q --table ") + (scratch_ / "table.tsv") + " " + schedule + kShort,
+            "tasks.pfm");
     ASSERT_EQ(done.status, 0) << done.errors;
     EXPECT_TRUE(readText(scratch_ / "tasks.pfm") == expected) << "the pictures differ";
     const auto rows = rowsOf(readText(scratch_ / "table.tsv"));
@@ -124,7 +125,8 @@ TEST_F(PvmImages, NothingIsLeftAfterAKill) {
   for (int i = 0; i < 150 && !processesWith(mark).empty(); ++i) usleep(100'000);
   EXPECT_TRUE(processesWith(mark).empty());
   for (const auto& entry : std::filesystem::recursive_directory_iterator(scratch_.path()))
-    EXPECT_TRUE(!entry.is_regular_file() || entry.path().filename() == "large.ppm" || entry.file_size() < 1'000'000)
+    EXPECT_TRUE(!entry.is_regular_file() || entry.path().filename() == "large.ppm" ||
+                entry.file_size() < 1'000'000)
         << entry.path();
 }
 

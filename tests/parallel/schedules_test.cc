@@ -28,6 +28,7 @@ HostOptions randomSchedule(std::uint64_t seed) {
   host.cells = random.pick({1u, 8u, 60u, 400u});
   host.tilePixels = random.pick({1u, 16u, 256u});
   host.dynamicShading = random.oneIn(4);
+  host.threads = random.pick({0u, 1u, 3u});
   host.split = random.pick({Split::equal, Split::cost, Split::balanced});
   DemandPolicy& policy = host.policy;
   policy.shadows = random.pick({ShadowPolicy::forward, ShadowPolicy::local, ShadowPolicy::automatic});
@@ -55,7 +56,7 @@ TEST(Schedules, AnyPolicyAnyHorizonAnyCacheGivesTheSameBits) {
     for (std::uint64_t trial = 0; trial < 3; ++trial) {
       SCOPED_TRACE("trial " + std::to_string(trial));
       const RenderedByTasks got =
-          renderByTasks(job, randomSchedule(7 * seed + trial), {.seed = seed + 1000 * trial});
+          renderByTasks(job, randomSchedule(7 * seed + trial), {.seed = seed + 1000 * trial, .cores = 2});
       ASSERT_EQ(difference(got.frames, expected.frames), "");
       ASSERT_EQ(got.summary.successions, 0);
       for (const TaskSummary& task : got.summary.tasks) {
@@ -108,7 +109,7 @@ TEST(Schedules, ScenesOfTheSuiteHaveTheSameBits) {
   }
 }
 
-TEST(Schedules, ACellThatIsInUseStaysInACacheWithoutRoom) {
+TEST(Schedules, RaysTravelWhereACacheHasNoRoom) {
   Job job = jobOfText(randomScene(5));
   HostOptions host;
   host.wishes = {.voxels = 2, .pyramids = 2, .shades = 1};
@@ -119,6 +120,37 @@ TEST(Schedules, ACellThatIsInUseStaysInACacheWithoutRoom) {
   host.policy.horizon = {Horizon::Kind::cells, 1e9};
   const RenderedByTasks got = renderByTasks(job, host, {.seed = 3});
   EXPECT_EQ(difference(got.frames, renderSequentially(job).frames), "");
+  for (const TaskSummary& task : got.summary.tasks) EXPECT_EQ(task.report.cache.fetched, 0u);
+}
+
+// A heap of many small objects: every cell is small beside the cache.
+TEST(Schedules, NoTaskHoldsMoreThanItsCache) {
+  for (std::uint64_t seed = 0; seed < 8; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    std::string text = "eyep 0 -12 0\nscreen 32 32\nlight 1 point 9 -9 20\n";
+    for (int i = 0; i < 3000; ++i) {
+      const auto at = [&] { return std::to_string(random.real(-3, 3)) + " "; };
+      text += "sphere 0.05 " + at() + at() + at() + "\n";
+    }
+    const Job job = jobOfText(text);
+    HostOptions host;
+    host.wishes = {.voxels = 2, .pyramids = 2, .shades = 1};
+    host.policy.cacheBytes = random.pick<std::uint64_t>({40'000, 100'000, 300'000});
+    host.policy.shadeLocally = true;
+    host.policy.shadows = random.pick({ShadowPolicy::local, ShadowPolicy::automatic});
+    host.policy.secondariesTravel = random.oneIn(2);
+    if (random.oneIn(2)) host.policy.horizon = {Horizon::Kind::cells, 1e9};
+    host.tilePixels = 64;
+    const RenderedByTasks got = renderByTasks(job, host, {.seed = seed});
+    EXPECT_EQ(difference(got.frames, renderSequentially(job).frames), "");
+    std::uint64_t fetched = 0;
+    for (const TaskSummary& task : got.summary.tasks) {
+      EXPECT_LE(task.report.cache.peakBytes, host.policy.cacheBytes);
+      fetched += task.report.cache.fetched;
+    }
+    EXPECT_GT(fetched, 0u);
+  }
 }
 
 }  // namespace

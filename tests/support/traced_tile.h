@@ -1,10 +1,18 @@
-// Tiles whose samples get their colours from a function.
+// Small pictures, and tiles whose samples get their colours from a function.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include "rayshade/sampling/sampler.h"
 
 namespace rayshade {
+
+inline PictureSpec specOf(std::int32_t width, std::int32_t height, std::int32_t side) {
+  PictureSpec spec;
+  spec.width = width;
+  spec.height = height;
+  spec.samplesPerSide = side;
+  return spec;
+}
 
 template <class ColorOf>
 TileColors tracedTile(const SamplingRules& rules, const Tile& tile, ColorOf&& colorOf) {

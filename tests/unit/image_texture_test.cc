@@ -7,8 +7,7 @@
 namespace rayshade {
 namespace {
 
-ImageTexture textureOf(std::int32_t width, std::int32_t height, std::int32_t channels,
-                       const Pixels& bytes) {
+ImageTexture textureOf(std::int32_t width, std::int32_t height, std::int32_t channels, const Pixels& bytes) {
   ImageTexture texture;
   texture.image = std::make_shared<const Image>(imageOfPixels(width, height, channels, bytes));
   return texture;

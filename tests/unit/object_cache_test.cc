@@ -1,9 +1,11 @@
-// The cache of other tasks' cells: bounded in bytes, least recently used out first, what is in use stays.
+// The cache of other tasks' cells: bounded in bytes, least recently used out first.
 // guarded: borrows cells of others
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pvm/trace/object_cache.h"
 
 #include <gtest/gtest.h>
+
+#include "tests/support/random.h"
 
 namespace rayshade {
 namespace {
@@ -96,45 +98,40 @@ TEST(ObjectCache, ALargeCellPushesOutAsManySmallOnesAsItNeeds) {
   EXPECT_EQ(held(cache), Cells{1});
 }
 
-TEST(ObjectCache, PinnedCellsStayThroughAnything) {
+TEST(ObjectCache, ItNeverHoldsMoreThanItsRoomButForOneCell) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    ObjectCache cache;
+    const std::size_t most = static_cast<std::size_t>(random.integer(0, 200'000));
+    cache.begin(most);
+    std::size_t largest = 0;
+    for (int i = 0; i < 60; ++i) {
+      const CellId cell{static_cast<std::uint32_t>(random.integer(0, 30))};
+      largest = std::max(
+          largest, cache.insert(cell, spheres(static_cast<std::uint32_t>(random.integer(1, 200))), {}, 1));
+      EXPECT_TRUE(cache.contains(cell));
+      std::size_t sum = 0;
+      for (std::uint32_t other : held(cache)) sum += cache.bytesOf(CellId{other});
+      EXPECT_EQ(cache.bytes(), sum);
+      EXPECT_TRUE(cache.bytes() <= most || held(cache).size() == 1);
+    }
+    EXPECT_LE(cache.counts().peakBytes, std::max(most, largest));
+  }
+}
+
+TEST(ObjectCache, RemembersWhatCellsWereWorthThatLeft) {
   ObjectCache cache;
   cache.begin(bytesOfCell());
   insert(cache, 0);
-  cache.pin(CellId{0});
-  const Region* region = cache.find(CellId{0}).region;
-  for (std::uint32_t cell = 1; cell < 6; ++cell) insert(cache, cell);
-  EXPECT_EQ(held(cache), (Cells{0, 5}));
-  EXPECT_EQ(cache.find(CellId{0}).region, region) << "and where they are";
-  cache.pin(CellId{0});
-  cache.unpin(CellId{0});
-  insert(cache, 6);
-  EXPECT_EQ(held(cache), (Cells{0, 6})) << "pinned twice, let go once";
-}
-
-TEST(ObjectCache, WhatIsLetGoMakesRoomAtOnce) {
-  ObjectCache cache;
-  cache.begin(2 * bytesOfCell());
-  for (std::uint32_t cell = 0; cell < 4; ++cell) {
-    insert(cache, cell);
-    cache.pin(CellId{cell});
-  }
-  EXPECT_EQ(held(cache), (Cells{0, 1, 2, 3})) << "more than there is room for, all of it in use";
-  cache.unpin(CellId{1});
-  EXPECT_EQ(held(cache), (Cells{0, 2, 3}));
-  cache.unpin(CellId{2});
-  EXPECT_EQ(held(cache), (Cells{0, 3}));
-  cache.unpin(CellId{0});
-  EXPECT_EQ(held(cache), (Cells{0, 3})) << "there is room for two";
-}
-
-TEST(ObjectCache, CellsThatAreNotHereCannotBePinned) {
-  ObjectCache cache;
-  cache.begin(0);
-  cache.pin(CellId{3});
-  cache.unpin(CellId{3});
-  insert(cache, 3);
-  insert(cache, 4);
-  EXPECT_EQ(held(cache), Cells{4});
+  cache.find(CellId{0}, 30);
+  cache.find(CellId{0}, 12);
+  EXPECT_EQ(cache.ofThoseThatLeft().bytes, 0);
+  insert(cache, 1);
+  EXPECT_EQ(cache.ofThoseThatLeft().rays, 42);
+  EXPECT_EQ(cache.ofThoseThatLeft().bytes, static_cast<double>(bytesOfCell()));
+  insert(cache, 2);
+  EXPECT_LT(cache.ofThoseThatLeft().rays, 42) << "nobody has looked into cell 1";
 }
 
 TEST(ObjectCache, ACellThatIsHereAlreadyIsNotTakenAgain) {
@@ -150,7 +147,6 @@ TEST(ObjectCache, ANewEpochBeginsEmpty) {
   ObjectCache cache;
   cache.begin(bytesOfCell());
   insert(cache, 0);
-  cache.pin(CellId{0});
   cache.begin(bytesOfCell());
   EXPECT_TRUE(held(cache).empty());
   insert(cache, 1);

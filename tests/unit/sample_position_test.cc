@@ -10,18 +10,12 @@
 #include <numeric>
 #include <vector>
 
+#include "tests/support/traced_tile.h"
+
 namespace rayshade {
 namespace {
 
 constexpr std::uint64_t kSeed = 7;
-
-PictureSpec specOf(std::int32_t width, std::int32_t height, std::int32_t side) {
-  PictureSpec spec;
-  spec.width = width;
-  spec.height = height;
-  spec.samplesPerSide = side;
-  return spec;
-}
 
 TEST(SampleNumbers, AreAPermutationOfTheStrata) {
   for (std::int32_t side = 1; side <= 8; ++side) {

@@ -22,14 +22,6 @@ using Rows = std::vector<std::vector<Color>>;
 constexpr std::uint64_t kSeed = 7;
 constexpr std::uint32_t kFrame = 3;
 
-PictureSpec specOf(std::int32_t width, std::int32_t height, std::int32_t side) {
-  PictureSpec spec;
-  spec.width = width;
-  spec.height = height;
-  spec.samplesPerSide = side;
-  return spec;
-}
-
 // A scene: edges, a fine pattern that refines again and again, smooth parts, black, light above 1.
 Color colorOf(const PictureSpec& spec, const SampleId& id) {
   const SamplePosition at = samplePosition(spec, kSeed, kFrame, id);
