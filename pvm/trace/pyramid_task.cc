@@ -109,7 +109,7 @@ void PyramidTask::on(TaskId, const Answer& message) {
 
 void PyramidTask::on(TaskId, CellItems message) {
   const CellId cell = message.cell;
-  if (!unit_.cells.arrive(std::move(message))) {
+  if (!unit_.images.fill(message.items) || !unit_.cells.arrive(std::move(message))) {
     ++context_.outbox.traffic.refused;
     return;
   }

@@ -9,6 +9,7 @@
 #pragma once
 
 #include "pvm/trace/hit_shader.h"
+#include "pvm/trace/image_copies.h"
 #include "pvm/trace/ray_bundle.h"
 #include "rayshade/trace/tracer.h"
 
@@ -60,6 +61,7 @@ struct TraceUnit {
   TaskContext& context;
   EpochSettings at;
   TraceCounts counts;
+  ImageCopies images;
   ObjectCache cache;
   CellFetcher cells;
   TaskSpace space;

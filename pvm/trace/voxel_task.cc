@@ -18,8 +18,12 @@ void VoxelTask::dropWork() {
 }
 
 void VoxelTask::on(TaskId from, Items message) {
-  share_.take(std::move(message.items));
   context_.outbox.post(from, ItemsTaken{});
+  if (!unit_.images.fill(message.items)) {
+    ++context_.outbox.traffic.refused;
+    return;
+  }
+  share_.take(std::move(message.items));
 }
 
 void VoxelTask::on(TaskId from, Configure message) {
@@ -62,7 +66,7 @@ void VoxelTask::on(TaskId from, CellWanted message) {
 
 void VoxelTask::on(TaskId, CellItems message) {
   const CellId cell = message.cell;
-  if (!unit_.cells.arrive(std::move(message))) {
+  if (!unit_.images.fill(message.items) || !unit_.cells.arrive(std::move(message))) {
     ++context_.outbox.traffic.refused;
     return;
   }

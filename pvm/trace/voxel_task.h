@@ -16,7 +16,7 @@ namespace rayshade {
 class VoxelTask {
  public:
   using Accepted = TypeList<Forget, Items, Configure, Finish, Ping, Weights, PrimaryRays, TileWork, RayTask,
-                            ShadowTask, CellWanted, CellItems, Answer>;
+                            ShadowTask, CellWanted, CellItems, Answer, ImagePlace, ImagePiece>;
 
   explicit VoxelTask(Link& link)
       : context_(link), unit_(context_, &share_), jobs_(context_, unit_.at, unit_.space) {}
@@ -43,6 +43,8 @@ class VoxelTask {
   void on(TaskId from, Weights message);
   void on(TaskId from, CellWanted message);
   void on(TaskId from, CellItems message);
+  void on(TaskId from, const ImagePlace& message) { unit_.images.take(from, message, context_); }
+  void on(TaskId from, const ImagePiece& message) { unit_.images.take(from, message, context_); }
 
   // Samples, rays, intersections with shadow rays, tiles.
   std::uint64_t waiting() const {
