@@ -63,6 +63,6 @@ using AllMessages = InOrderOfTags<ControlMessages, CellMessages, RayMessages, Im
 // The compiler names what is missing.
 static_assert((AllMessages::forEach([]<Message M>() {}), true));
 
-inline constexpr std::uint8_t kWireVersion = 6;
+inline constexpr std::uint8_t kWireVersion = 7;
 
 }  // namespace rayshade

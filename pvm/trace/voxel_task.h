@@ -35,7 +35,7 @@ class VoxelTask {
   void on(TaskId from, Configure message);
   void on(TaskId from, Finish);
   void on(TaskId from, Ping);
-  void on(TaskId from, PrimaryRays&& work);
+  void on(TaskId, PrimaryRays&& work);
   void on(TaskId from, TileWork message);
   void on(TaskId from, const Answer& message);
   void on(TaskId from, RayTask&& task);
@@ -65,8 +65,8 @@ class VoxelTask {
   TraceUnit unit_;
   TileJobs jobs_;  // with several threads, if all that there is to be met is here
   TaskId host_ = kNobody;
-  bool takesTiles_ = false;
-  SampleQueue samples_;  // their rays are made when there is nothing deeper to do
+  bool takesTiles_ = false, onlyTracer_ = false;  // only voxel-trace tasks trace
+  SampleQueue samples_;                           // their rays are made when there is nothing deeper to do
   RayQueue rays_;
   ShadowQueue shadows_;
   RayBundle bundle_;  // being traced
