@@ -73,11 +73,12 @@ void ObjectCache::makeRoomFor(std::size_t bytes) {
   }
 }
 
-bool ObjectCache::join(double allBytes, const Exposure& exposure) {
+bool ObjectCache::join(double allBytes, const Exposure& exposure, const Model* own) {
   if (cells_.empty() || kBytesJoinedPerLook * static_cast<double>(looks_) < static_cast<double>(bytes_) ||
       kWhileJoining * std::max(allBytes, static_cast<double>(bytes_)) > static_cast<double>(mostBytes_))
     return false;
   looks_ = 0;
+  if (own != nullptr && !anyJoined()) moveIntoJoined(*own);
   joined_.region = {};
   for (auto it = cells_.begin(); it != cells_.end(); it = cells_.erase(it)) {
     moveIntoJoined(it->second->model);

@@ -38,13 +38,10 @@ void VoxelTask::on(TaskId from, Configure message) {
   dropWork();
   host_ = from;
   const std::uint32_t number = *place, perCluster = directory.tasksPerCluster();
-  const Neighbours neighbours = neighboursOf(directory, number);
   onlyTracer_ = directory.pyramidTasks.empty();
-  takesTiles_ =
-      inTiles(message) &&
-      (onlyTracer_ || (message.policy.secondariesTravel && neighbours.before < context_.link.cores()));
+  takesTiles_ = inTiles(message) && (onlyTracer_ || message.policy.secondariesTravel);
   // Together the tasks of a machine have no more threads than it has cores, but each has one.
-  const unsigned cores = context_.link.cores(), share = std::max(1u, cores / neighbours.all);
+  const unsigned share = std::max(1u, context_.link.cores() / tracersBeside(directory, number));
   const unsigned threads = message.threads > 0 ? std::min(message.threads, share) : share;
   unit_.begin(from, std::move(message), number / perCluster, number);
   share_.prepare(unit_.at.exposure, unit_.at.tree, unit_.at.directory.voxels, number % perCluster);
