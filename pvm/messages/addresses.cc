@@ -10,9 +10,21 @@ namespace rayshade {
 bool isComplete(const Directory& d, const BinTree& tree) {
   if (d.clusters == 0 || d.voxelTasks.empty() || d.voxelTasks.size() % d.clusters != 0) return false;
   if (d.voxels.size() != voxelCount(tree)) return false;
+  if (d.machines.size() != finderCount(d)) return false;
   if (d.shadeWeights.size() != d.shadeTasks.size()) return false;
   return std::all_of(d.voxels.begin(), d.voxels.end(),
                      [&](std::uint32_t task) { return task < d.tasksPerCluster(); });
+}
+
+Neighbours neighboursOf(const Directory& directory, std::size_t finder) {
+  const auto isPyramid = [&](std::size_t task) { return task >= directory.voxelTasks.size(); };
+  Neighbours neighbours;
+  for (std::size_t other = 0; other < directory.machines.size(); ++other) {
+    if (directory.machines[other] != directory.machines[finder]) continue;
+    ++neighbours.all;
+    neighbours.before += isPyramid(other) != isPyramid(finder) ? isPyramid(other) : other < finder;
+  }
+  return neighbours;
 }
 
 std::optional<std::uint32_t> placeAmong(const std::vector<TaskId>& tasks, TaskId task) {

@@ -8,8 +8,8 @@ namespace {
 
 constexpr double kRemembered = 0.95;  // what one cell that leaves keeps of those before it
 
-// A look into a single cell takes as long as joining about so many bytes.
-constexpr double kBytesJoinedPerLook = 32;
+// A look into a single cell takes 0.15 us that joining would save, and joining 18 ns a byte.
+constexpr double kBytesJoinedPerLook = 8;
 // While cells are joined, so many times their bytes are needed: lists grow, trees are built in pieces.
 constexpr double kWhileJoining = 1.5;
 
