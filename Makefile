@@ -160,7 +160,7 @@ $(BIN)/share/bash-completion/completions/%: $(BIN)/%
 	$(quietly)$< --completions >$@.part
 	@mv $@.part $@
 $(BIN)/rayshade-tests: $(tests) $(fuzzed) $(oracle) $(BUILD)/libsupport.a $(libraries)
-	$(call link,-lgtest -lgtest_main -lpthread)
+	$(call link,-lgtest -lgtest_main -lpthread -lmpfr)
 $(BIN)/guarded-tests: $(guarded_tests) $(fuzzed) $(BUILD)/libsupport.a $(libraries)
 	$(call link,-lgtest -lgtest_main -lpthread)
 $(BIN)/link-tests: $(link_tests) $(pvm_door) $(BUILD)/libsupport.a $(libraries)
