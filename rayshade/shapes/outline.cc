@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "rayshade/base/elementary.h"
 #include "rayshade/shapes/shape.h"
 
 namespace rayshade {
@@ -49,7 +50,7 @@ Outline::Outline(const std::vector<Vec3>& corners, Vec3 normal) : first_(corners
       Vec3 a = corners[i] - first_, b = corners[i + 1 < corners.size() ? i + 1 : 0] - first_;
       const int turn = a[axisY_] < b[axisY_] ? 1 : a[axisY_] > b[axisY_] ? -1 : 0;
       if (turn < 0) std::swap(a, b);
-      const double x = b[axisX_] - a[axisX_], y = b[axisY_] - a[axisY_], size = std::hypot(x, y);
+      const double x = b[axisX_] - a[axisX_], y = b[axisY_] - a[axisY_], size = elementary::hypot(x, y);
       if (!(size > 0)) continue;
       use(Edge{a[axisX_], a[axisY_], b[axisY_], x / size, y / size, turn}, bandOf(a[axisY_] - 2 * overlap_),
           bandOf(b[axisY_] + 2 * overlap_));
