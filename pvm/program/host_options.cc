@@ -145,7 +145,7 @@ void declareHostOptions(CLI::App& app, HostProgramOptions& o) {
       ->check(CLI::IsMember({"separate", "local"}))
       ->group(sharing);
   app.add_option("--cache", o.cacheMegabytes, "object cache of each task, in MB")
-      ->check(numberFrom(0.001, 1e9))
+      ->transform(numberFrom(0.001, 1e9))
       ->group(sharing);
   app.add_option("--cells", o.host.cells, "cells of the bin-tree, about (default: by the size of the scene)")
       ->check(wholeNumberFrom(1, 1 << 22))
@@ -161,7 +161,7 @@ void declareHostOptions(CLI::App& app, HostProgramOptions& o) {
       ->group(tasks);
   app.add_option("--patience", o.patience,
                  "seconds of silence after which a task that renders counts as hanging (default: 30)")
-      ->check(numberFrom(0.1, 1e6))
+      ->transform(numberFrom(0.1, 1e6))
       ->group(tasks);
   app.add_flag("--plan", o.plan, "render nothing: print which tasks would run where and why")->group(tasks);
   app.add_option("--table", o.tableFile, "write what each task did to this file, as tab-separated values")
