@@ -208,7 +208,7 @@ bench: $(BIN)/rayshade $(BIN)/rayshade-error $(BIN)/spd
 	@PYTHONDONTWRITEBYTECODE=1 tests/bench/speed_and_error/run --bin $(BIN) docs
 
 bench-splitting: all benches
-	@tests/bench/splitting
+	@tests/bench/plot_splitting
 	@tests/bench/start_up || true
 	@tests/bench/memory || true
 
