@@ -16,21 +16,19 @@ bool isComplete(const Directory& d, const BinTree& tree) {
                      [&](std::uint32_t task) { return task < d.tasksPerCluster(); });
 }
 
-Neighbours neighboursOf(const Directory& directory, std::size_t finder) {
-  const auto isPyramid = [&](std::size_t task) { return task >= directory.voxelTasks.size(); };
-  Neighbours neighbours;
-  for (std::size_t other = 0; other < directory.machines.size(); ++other) {
-    if (directory.machines[other] != directory.machines[finder]) continue;
-    ++neighbours.all;
-    neighbours.before += isPyramid(other) != isPyramid(finder) ? isPyramid(other) : other < finder;
-  }
-  return neighbours;
+std::uint32_t tracersBeside(const Directory& directory, std::size_t finder) {
+  const std::vector<std::uint32_t>& machines = directory.machines;
+  return static_cast<std::uint32_t>(std::count(machines.begin(), machines.end(), machines[finder]));
 }
 
 std::optional<std::uint32_t> placeAmong(const std::vector<TaskId>& tasks, TaskId task) {
   const auto found = std::find(tasks.begin(), tasks.end(), task);
   if (found == tasks.end()) return std::nullopt;
   return static_cast<std::uint32_t>(found - tasks.begin());
+}
+
+bool isTracer(const Directory& directory, TaskId task) {
+  return placeAmong(directory.voxelTasks, task) || placeAmong(directory.pyramidTasks, task);
 }
 
 std::size_t chooseShadeTask(const Directory& directory, std::uint64_t serial) {

@@ -52,12 +52,9 @@ struct Directory {
 };
 // The tasks that trace, which number the intersections that they find: voxel tasks come first.
 inline std::size_t finderCount(const Directory& d) { return d.voxelTasks.size() + d.pyramidTasks.size(); }
-// The tasks that trace on the machine of one of them, given by its place among all that trace.
-struct Neighbours {
-  std::uint32_t all = 0;     // with itself
-  std::uint32_t before = 0;  // those that have work first: pyramid tasks before voxel tasks
-};
-Neighbours neighboursOf(const Directory& directory, std::size_t finder);
+bool isTracer(const Directory& directory, TaskId task);
+// How many tasks trace on the machine of one of them, itself included; `finder`: its place among all that trace.
+std::uint32_t tracersBeside(const Directory& directory, std::size_t finder);
 // Does it fit together, and has every voxel of the tree an owner?
 bool isComplete(const Directory& directory, const BinTree& tree);
 // The place of a task among those of its role; nothing: it is not one of them.
