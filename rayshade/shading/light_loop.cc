@@ -33,7 +33,7 @@ const LightSource& lightOfRow(const SceneSettings& settings, std::size_t row) {
 
 LightQuery lightQuery(Vec3 position, RandomKey key, int sample, std::uint32_t light,
                       const SceneSettings& settings) {
-  return {position, child(key, Branch::light, light), sample, settings.samplesPerSide};
+  return {position, child(key, Branch::light, light), sample, settings.samples};
 }
 
 double lightCosine(Vec3 toward, Vec3 normal, Vec3 geometricNormal, bool smooth) {
