@@ -35,6 +35,7 @@ HostTask::HostTask(Machine& machine, SceneReader readScene, Survey survey, const
       options_(options),
       outbox_(machine),
       roster_(machine, options_),
+      images_(outbox_, roster_, machine.hosts()[0].name, [this] { takeEvents(1); }),
       survey_(std::move(survey)),
       issuing_(outbox_, configuration_, options_) {
   configuration_.settings = settings;
@@ -140,7 +141,7 @@ void HostTask::reconfigure() {
     roster_.startMissing();
     enlist(roster_.slaves(), configuration_.directory);
     ship();
-  } while (!roster_.complete() || !configure());
+  } while (!bringImages() || !roster_.complete() || !configure());
   rendering_ = true;
   summary_.startSeconds += machine_.now() - begin;
 }
@@ -155,16 +156,32 @@ void HostTask::ship() {
     outbox_.post(voxelTasks[number]->task, Forget{});
   }
   if (targets.empty()) return;
-  Shipping shipping(configuration_, targets, [&](std::uint32_t number, Items&& batch) {
-    Slave& slave = *voxelTasks[number];
-    while (slave.task != kNobody && slave.batchesOut >= Shipping::kBatches) takeEvents(1);
-    if (slave.task == kNobody) return;  // died meanwhile: its successor gets all of it
-    ++slave.batchesOut;
-    outbox_.post(slave.task, batch);
-  });
+  for (std::uint32_t number : targets) voxelTasks[number]->hasItems = true;  // until it turns out otherwise
+  Shipping shipping(
+      configuration_, targets,
+      [&](std::uint32_t number, Items&& batch) {
+        Slave& slave = *voxelTasks[number];
+        while (slave.task != kNobody && slave.batchesOut >= Shipping::kBatches) takeEvents(1);
+        if (slave.task == kNobody) return;  // died meanwhile: its successor gets all of it
+        ++slave.batchesOut;
+        outbox_.post(slave.task, batch);
+      },
+      [&](std::uint32_t number, const Image& image) { images_.bring(*voxelTasks[number], image); });
   readScene_(shipping.sink());
   shipping.finish();
-  for (std::uint32_t number : targets) voxelTasks[number]->hasItems = voxelTasks[number]->task != kNobody;
+  for (std::uint32_t number : targets)
+    if (voxelTasks[number]->task == kNobody) voxelTasks[number]->hasItems = false;
+}
+
+// Whoever gets cells of others gets all images.  False: some task must be shipped to again.
+bool HostTask::bringImages() {
+  for (Slave& slave : roster_.slaves()) {
+    const Role role = slave.placement.role;
+    const bool fetches = role == Role::pyramidTrace ||
+                         (role == Role::voxelTrace && options_.policy.shadows != ShadowPolicy::forward);
+    if (fetches) images_.bringAll(slave);
+  }
+  return images_.settle();
 }
 
 // Tells everybody of the new epoch and waits until all are ready; nothing of the new epoch exists before.  False: a

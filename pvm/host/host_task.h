@@ -12,6 +12,7 @@
 
 #include <functional>
 
+#include "pvm/host/image_shipping.h"
 #include "pvm/host/issuing.h"
 #include "pvm/host/roster.h"
 #include "pvm/messages/inbox.h"
@@ -21,8 +22,8 @@ namespace rayshade {
 
 class HostTask {
  public:
-  using Accepted =
-      TypeList<ItemsTaken, Ready, Report, Pong, Load, Answer, SampleColors, TileDone, PyramidWanted>;
+  using Accepted = TypeList<ItemsTaken, Ready, Report, Pong, Load, Answer, SampleColors, TileDone,
+                            PyramidWanted, ImageTaken>;
   // Reads the scene once more, from the beginning, into a sink.
   using SceneReader = std::function<void(SceneSink&)>;
 
@@ -42,6 +43,7 @@ class HostTask {
   void on(TaskId from, Ready message);
   void on(TaskId from, Report message);
   void on(TaskId, Pong) {}
+  void on(TaskId from, ImageTaken message) { outbox_.traffic.refused += !images_.arrive(from, message); }
   void on(TaskId from, Load message);
   void on(TaskId, Answer message) { issuing_.arrive(message.record, message.color); }
   void on(TaskId, const SampleColors& message);
@@ -52,6 +54,7 @@ class HostTask {
   void divide();
   void reconfigure();
   void ship();
+  bool bringImages();
   bool configure();
   void sendWeights();
   void takeEvents(double patience);
@@ -62,6 +65,7 @@ class HostTask {
   HostOptions options_;
   Outbox outbox_;
   Roster roster_;
+  ImageShipping images_;
   Survey survey_;
   Configure configuration_;  // what all slaves are told
   Issuing issuing_;

@@ -42,10 +42,12 @@ std::vector<std::uint32_t> tasksTouching(const Bounds& bounds, const Configure& 
 
 }  // namespace
 
-Shipping::Shipping(Configure& configuration, std::set<std::uint32_t> targets, Send send)
+Shipping::Shipping(Configure& configuration, std::set<std::uint32_t> targets, Send send,
+                   BringImage bringImage)
     : configuration_(configuration),
       targets_(std::move(targets)),
       send_(std::move(send)),
+      bringImage_(std::move(bringImage)),
       stream_(configuration.exposure,
               [this](const SceneObject& object, const Bounds& bounds, std::span<const NodeItem* const> nodes,
                      const ObjectStream::Brought&) { ship(object, bounds, nodes); }) {
@@ -76,6 +78,9 @@ void Shipping::addNode(std::uint32_t task, const NodeItem& node) {
   if (sent.size() >= kRemembered) sent.clear();
   if (!sent.insert(number(node.id)).second) return;
   addSurface(task, node.node.surface);
+  for (const PlacedTexture& placed : node.node.textures)
+    if (const ImageTexture* texture = std::get_if<ImageTexture>(&placed.texture))
+      bringImage_(task, *texture->image);
   add(task, node);
 }
 

@@ -23,9 +23,12 @@ class Shipping {
   // Sends to the task with a number; returns when another batch may follow (or must give up: then it throws).
   using Send = std::function<void(std::uint32_t task, Items&& batch)>;
 
+  // Sees to it that the task has an image.
+  using BringImage = std::function<void(std::uint32_t task, const Image& image)>;
+
   // `targets`: which of the directory's voxel tasks are shipped to.  What lies in each cell of the tree is noted in
   // `configuration`.
-  Shipping(Configure& configuration, std::set<std::uint32_t> targets, Send send);
+  Shipping(Configure& configuration, std::set<std::uint32_t> targets, Send send, BringImage bringImage);
 
   SceneSink& sink() { return stream_; }  // for the whole scene
   void finish();                         // sends what is left
@@ -46,6 +49,7 @@ class Shipping {
   Configure& configuration_;
   std::set<std::uint32_t> targets_;
   Send send_;
+  BringImage bringImage_;
   ObjectStream stream_;
   std::unordered_map<std::uint32_t, Parcel> parcels_;
 };

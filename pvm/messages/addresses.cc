@@ -10,9 +10,15 @@ namespace rayshade {
 bool isComplete(const Directory& d, const BinTree& tree) {
   if (d.clusters == 0 || d.voxelTasks.empty() || d.voxelTasks.size() % d.clusters != 0) return false;
   if (d.voxels.size() != voxelCount(tree)) return false;
+  if (d.machines.size() != finderCount(d)) return false;
   if (d.shadeWeights.size() != d.shadeTasks.size()) return false;
   return std::all_of(d.voxels.begin(), d.voxels.end(),
                      [&](std::uint32_t task) { return task < d.tasksPerCluster(); });
+}
+
+std::uint32_t tracersBeside(const Directory& directory, std::size_t finder) {
+  const std::vector<std::uint32_t>& machines = directory.machines;
+  return static_cast<std::uint32_t>(std::count(machines.begin(), machines.end(), machines[finder]));
 }
 
 std::optional<std::uint32_t> placeAmong(const std::vector<TaskId>& tasks, TaskId task) {

@@ -29,14 +29,18 @@ class Outbox {
                   "this is not in the list of messages: append it to the list at the end of the file in "
                   "pvm/messages where it stands");
     Open& open = packetTo(to);
-    Writer{open.bytes}(M::tag, message);
+    {
+      Writer writer(open.bytes);
+      writer(M::tag);
+      serializeInPacket(writer, const_cast<M&>(message), open.memory);  // a Writer reads only
+    }
     sendIfFull(open);
   }
 
   // What is the same for all is encoded once.
   template <class M>
   void postToAll(std::span<const TaskId> tasks, const M& message) {
-    static_assert(kIsIn<M, AllMessages>);
+    static_assert(kIsIn<M, AllMessages> && M::isFact, "work looks at what is before it in its packet");
     Bytes encoded;
     Writer{encoded}(M::tag, message);
     for (const TaskId to : tasks) {
@@ -65,6 +69,7 @@ class Outbox {
   struct Open {
     TaskId to = kNobody;
     Bytes bytes;
+    PacketMemory memory;
   };
   Open& packetTo(TaskId to) {
     if (last_ == nullptr || last_->to != to) {
@@ -74,6 +79,7 @@ class Outbox {
     if (last_->bytes.empty()) {
       last_->bytes.reserve(kFull + kRoom);
       Writer{last_->bytes}(kWireVersion, epoch_);
+      last_->memory = {};
     }
     return *last_;
   }

@@ -17,7 +17,8 @@ namespace rayshade {
 
 class PyramidTask {
  public:
-  using Accepted = TypeList<Configure, Finish, Ping, Weights, TileWork, PrimaryRays, CellItems, Answer>;
+  using Accepted = TypeList<Configure, Finish, Ping, Weights, TileWork, PrimaryRays, CellItems, Answer,
+                            ImagePlace, ImagePiece>;
 
   explicit PyramidTask(Link& link) : context_(link), unit_(context_, nullptr) {}
 
@@ -36,6 +37,8 @@ class PyramidTask {
   void on(TaskId from, PrimaryRays message);
   void on(TaskId from, const Answer& message);
   void on(TaskId from, CellItems message);
+  void on(TaskId from, const ImagePlace& message) { unit_.images.take(from, message, context_); }
+  void on(TaskId from, const ImagePiece& message) { unit_.images.take(from, message, context_); }
 
  private:
   bool objectsTravel() const { return !unit_.at.policy.secondariesTravel; }

@@ -14,6 +14,7 @@ void TraceUnit::begin(TaskId host, Configure&& message, std::uint32_t cluster, s
         std::move(message.cellBytes)};
   rules = samplingRules(at.request.picture, at.request.seed, static_cast<std::uint32_t>(at.exposure.frame));
   tiles.clear();
+  asked_ = 0;
   cells.begin();
   space.begin(message.cellBounds, context.link.self());
   shades.begin(finder);
@@ -21,9 +22,8 @@ void TraceUnit::begin(TaskId host, Configure&& message, std::uint32_t cluster, s
   shadows.begin();
 }
 
-void TraceUnit::wantTiles(TaskId host, unsigned threads) {
-  for (unsigned i = 0; i < std::max<unsigned>(kAhead, 3 * threads); ++i)
-    context.outbox.post(host, PyramidWanted{});
+void TraceUnit::wantTiles(TaskId host, std::size_t most) {
+  for (; tiles.size() + asked_ < most; ++asked_) context.outbox.post(host, PyramidWanted{});
 }
 
 void TraceUnit::sendTiles(TaskId host) {
@@ -31,7 +31,6 @@ void TraceUnit::sendTiles(TaskId host) {
     ++pyramids;
     pyramidRays += tile->colors.samples;
     context.outbox.post(host, TileDone{tile->number, std::move(tile->colors)});
-    context.outbox.post(host, PyramidWanted{});
   }
 }
 

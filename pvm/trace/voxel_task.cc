@@ -18,8 +18,12 @@ void VoxelTask::dropWork() {
 }
 
 void VoxelTask::on(TaskId from, Items message) {
-  share_.take(std::move(message.items));
   context_.outbox.post(from, ItemsTaken{});
+  if (!unit_.images.fill(message.items)) {
+    ++context_.outbox.traffic.refused;
+    return;
+  }
+  share_.take(std::move(message.items));
 }
 
 void VoxelTask::on(TaskId from, Configure message) {
@@ -34,15 +38,16 @@ void VoxelTask::on(TaskId from, Configure message) {
   dropWork();
   host_ = from;
   const std::uint32_t number = *place, perCluster = directory.tasksPerCluster();
-  takesTiles_ = inTiles(message) && directory.pyramidTasks.empty();
-  const unsigned threads = message.threads > 0 ? message.threads : context_.link.cores();
+  onlyTracer_ = directory.pyramidTasks.empty();
+  takesTiles_ = inTiles(message) && (onlyTracer_ || message.policy.secondariesTravel);
+  // Together the tasks of a machine have no more threads than it has cores, but each has one.
+  const unsigned share = std::max(1u, context_.link.cores() / tracersBeside(directory, number));
+  const unsigned threads = message.threads > 0 ? std::min(message.threads, share) : share;
   unit_.begin(from, std::move(message), number / perCluster, number);
   share_.prepare(unit_.at.exposure, unit_.at.tree, unit_.at.directory.voxels, number % perCluster);
   context_.outbox.post(from, Ready{context_.epoch, arithmeticFingerprint(), share_.objects(), share_.owned(),
                                    share_.leftOut()});
-  if (!takesTiles_) return;
-  if (threads > 1) jobs_.begin(*unit_.rules, threads);
-  unit_.wantTiles(from, threads);
+  if (takesTiles_ && threads > 1 && unit_.space.blocks().allHeld()) jobs_.begin(from, *unit_.rules, threads);
 }
 
 void VoxelTask::on(TaskId, Weights message) { unit_.setWeights(message); }
@@ -62,7 +67,7 @@ void VoxelTask::on(TaskId from, CellWanted message) {
 
 void VoxelTask::on(TaskId, CellItems message) {
   const CellId cell = message.cell;
-  if (!unit_.cells.arrive(std::move(message))) {
+  if (!unit_.images.fill(message.items) || !unit_.cells.arrive(std::move(message))) {
     ++context_.outbox.traffic.refused;
     return;
   }
@@ -88,7 +93,7 @@ void VoxelTask::on(TaskId from, Ping) {
   context_.outbox.flush();
 }
 
-void VoxelTask::on(TaskId from, PrimaryRays&& work) {
+void VoxelTask::on(TaskId, PrimaryRays&& work) {
   if (!samplesFit(work, unit_.at.request.picture)) {
     ++context_.outbox.traffic.refused;
     return;
@@ -98,8 +103,8 @@ void VoxelTask::on(TaskId from, PrimaryRays&& work) {
     return;
   }
   samples_.add(std::move(work));
+  unit_.noteWork();
   context_.notePeak(waiting());
-  if (takesTiles_) context_.outbox.post(from, PyramidWanted{});
 }
 
 void VoxelTask::on(TaskId, TileWork message) {
@@ -112,19 +117,15 @@ void VoxelTask::on(TaskId, TileWork message) {
     return;
   }
   unit_.tiles.add(message.number, TileSampler(*unit_.rules, message.tile));
+  unit_.noteWork();
   context_.notePeak(waiting());
 }
 
 void VoxelTask::on(TaskId, const Answer& message) {
-  unit_.replies.answer({context_.link.self(), message.record, 0}, message.color);
+  unit_.replies.answer({context_.link.self(), message.record, message.slot}, message.color);
 }
 
 void VoxelTask::on(TaskId, RayTask&& task) {
-  if (task.to.task == context_.link.self() &&
-      task.to.slot != 0) {  // colours of its hits come from shade tasks
-    ++context_.outbox.traffic.refused;
-    return;
-  }
   const double begin = walkedTo(unit_.at.tree, task.ray.origin, task.ray.direction, task.step);
   rays_.add(std::move(task.ray), begin, task.to);
   context_.notePeak(waiting());
@@ -162,6 +163,8 @@ bool VoxelTask::traceSome() {
         [this](Ray&& ray, const NextBlock& next, const ReplyTo& to) { goOn(std::move(ray), next, to); });
   }
   unit_.sendTiles(host_);
+  // Where there are pyramid tasks, who is busy with rays leaves tiles to those who are idle.
+  if (takesTiles_ && !jobs_.active() && (onlyTracer_ || !any)) unit_.wantTiles(host_);
   return any;
 }
 
@@ -189,7 +192,9 @@ void VoxelTask::queue(Ray&& ray, const ReplyTo& to) {
   context_.notePeak(waiting());
 }
 
+// It travels, now and then with a debt that has its cell fetched for those that come later.
 void VoxelTask::goOn(Ray&& ray, const NextBlock& next, const ReplyTo& to) {
+  if (takesTiles_ && unit_.space.blocks().fetches()) unit_.cells.missed(next.cell, 1, false);
   unit_.replies.forward(unit_.at.ownerOf(next.voxel), std::move(ray), next.step, to);
 }
 

@@ -16,7 +16,7 @@ namespace rayshade {
 class VoxelTask {
  public:
   using Accepted = TypeList<Forget, Items, Configure, Finish, Ping, Weights, PrimaryRays, TileWork, RayTask,
-                            ShadowTask, CellWanted, CellItems, Answer>;
+                            ShadowTask, CellWanted, CellItems, Answer, ImagePlace, ImagePiece>;
 
   explicit VoxelTask(Link& link)
       : context_(link), unit_(context_, &share_), jobs_(context_, unit_.at, unit_.space) {}
@@ -35,7 +35,7 @@ class VoxelTask {
   void on(TaskId from, Configure message);
   void on(TaskId from, Finish);
   void on(TaskId from, Ping);
-  void on(TaskId from, PrimaryRays&& work);
+  void on(TaskId, PrimaryRays&& work);
   void on(TaskId from, TileWork message);
   void on(TaskId from, const Answer& message);
   void on(TaskId from, RayTask&& task);
@@ -43,6 +43,8 @@ class VoxelTask {
   void on(TaskId from, Weights message);
   void on(TaskId from, CellWanted message);
   void on(TaskId from, CellItems message);
+  void on(TaskId from, const ImagePlace& message) { unit_.images.take(from, message, context_); }
+  void on(TaskId from, const ImagePiece& message) { unit_.images.take(from, message, context_); }
 
   // Samples, rays, intersections with shadow rays, tiles.
   std::uint64_t waiting() const {
@@ -63,8 +65,8 @@ class VoxelTask {
   TraceUnit unit_;
   TileJobs jobs_;  // with several threads, if all that there is to be met is here
   TaskId host_ = kNobody;
-  bool takesTiles_ = false;
-  SampleQueue samples_;  // their rays are made when there is nothing deeper to do
+  bool takesTiles_ = false, onlyTracer_ = false;  // only voxel-trace tasks trace
+  SampleQueue samples_;                           // their rays are made when there is nothing deeper to do
   RayQueue rays_;
   ShadowQueue shadows_;
   RayBundle bundle_;  // being traced

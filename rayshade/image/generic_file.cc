@@ -20,7 +20,7 @@ std::optional<std::int32_t> takeSide(std::string_view& text) {
 
 }  // namespace
 
-Raster readGeneric(std::string_view content, const std::string& name) {
+void readGeneric(std::string_view content, const std::string& name, RasterRows& to) {
   const auto width = takeSide(content);
   const auto height = width ? takeSide(content) : std::nullopt;
   if (!height)
@@ -30,14 +30,17 @@ Raster readGeneric(std::string_view content, const std::string& name) {
     failOn(name, "more than width and height in the first line");
   content.remove_prefix(endOfLine + 1);
 
-  Raster raster;
-  raster.width = *width;
-  raster.height = *height;
-  raster.textureUpsideDown = true;
-  const std::size_t count = countLevels(raster, content.size(), name);
-  raster.levels.reserve(count);
-  for (const char byte : content.substr(0, count)) raster.levels.push_back(static_cast<std::uint8_t>(byte));
-  return raster;
+  RasterSize size;
+  size.width = *width;
+  size.height = *height;
+  size.textureUpsideDown = true;
+  const std::size_t count = countLevels(size, content.size(), name);
+  to.begin(size);
+  std::vector<std::uint16_t> levels(size.rowLevels());
+  for (std::size_t at = 0; at < count; at += levels.size()) {
+    for (std::size_t i = 0; i < levels.size(); ++i) levels[i] = static_cast<std::uint8_t>(content[at + i]);
+    to.row(levels);
+  }
 }
 
 }  // namespace rayshade

@@ -8,6 +8,6 @@
 
 namespace rayshade {
 
-Raster readGeneric(std::string_view content, const std::string& name);
+void readGeneric(std::string_view content, const std::string& name, RasterRows& to);
 
 }  // namespace rayshade

@@ -16,9 +16,11 @@
 
 namespace rayshade {
 
-std::variant<Image, FileProblem> readImage(const std::string& fileName);
+// Row by row: the pixels go to `to`, and neither they nor the file are held.
+std::variant<Image, FileProblem> readImage(const std::string& fileName, SharedBytes& to);
 
 // The same of the bytes of a file; `name` stands for it in messages.
-std::variant<Image, FileProblem> decodeImage(std::span<const std::byte> bytes, const std::string& name);
+std::variant<Image, FileProblem> decodeImage(std::span<const std::byte> bytes, const std::string& name,
+                                             SharedBytes& to);
 
 }  // namespace rayshade

@@ -3,6 +3,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rayshade/image/jpeg_file.h"
 
+#include <algorithm>
 #include <array>
 #include <csetjmp>
 #include <cstdio>
@@ -72,7 +73,7 @@ JpegReader::JpegReader() {
 
 }  // namespace
 
-Raster readJpeg(std::string_view content, const std::string& name) {
+void readJpeg(std::string_view content, const std::string& name, RasterRows& to) {
   JpegReader reader;
   jpeg_decompress_struct& jpeg = reader.jpeg;
   auto run = [&](const auto& calls) {
@@ -87,26 +88,29 @@ Raster readJpeg(std::string_view content, const std::string& name) {
   if (jpeg.num_components != 1 && jpeg.num_components != 3)
     failOn(name, "a JPEG that is neither gray nor RGB");
 
-  Raster raster;
-  raster.width = static_cast<std::int32_t>(jpeg.image_width);
-  raster.height = static_cast<std::int32_t>(jpeg.image_height);
-  raster.channels = jpeg.num_components;
-  const std::size_t count = countLevels(raster, kMostPerByte * content.size(), name);
-  raster.levels.reserve(count);
-  std::vector<JSAMPLE> row(count / static_cast<std::size_t>(raster.height));
+  RasterSize size;
+  size.width = static_cast<std::int32_t>(jpeg.image_width);
+  size.height = static_cast<std::int32_t>(jpeg.image_height);
+  size.channels = jpeg.num_components;
+  countLevels(size, kMostPerByte * content.size(), name);
+  to.begin(size);
+  std::vector<JSAMPLE> row(size.rowLevels());
+  std::vector<std::uint16_t> levels(size.rowLevels());
   run([&] {
     jpeg.out_color_space = jpeg.num_components == 1 ? JCS_GRAYSCALE : JCS_RGB;
     jpeg.dct_method = JDCT_ISLOW;
     jpeg.do_fancy_upsampling = FALSE;
     jpeg_start_decompress(&jpeg);
-    while (jpeg.output_scanline < jpeg.output_height) {
+  });
+  for (std::int32_t y = 0; y < size.height; ++y) {
+    run([&] {
       JSAMPROW rows[] = {row.data()};
       jpeg_read_scanlines(&jpeg, rows, 1);
-      raster.levels.insert(raster.levels.end(), row.begin(), row.end());
-    }
-    jpeg_finish_decompress(&jpeg);
-  });
-  return raster;
+    });
+    std::copy(row.begin(), row.end(), levels.begin());
+    to.row(levels);
+  }
+  run([&] { jpeg_finish_decompress(&jpeg); });
 }
 
 }  // namespace rayshade

@@ -11,6 +11,6 @@
 namespace rayshade {
 
 // Gray or colour.
-Raster readJpeg(std::string_view content, const std::string& name);
+void readJpeg(std::string_view content, const std::string& name, RasterRows& to);
 
 }  // namespace rayshade

@@ -47,41 +47,47 @@ class Cursor {
 };
 
 // The levels behind a header, `size` bytes each with the high one first.
-void readBytes(Raster& raster, std::string_view bytes, const std::string& name) {
+void readBytes(const RasterSize& raster, std::string_view bytes, const std::string& name, RasterRows& to) {
   const std::size_t size = raster.most > 255 ? 2 : 1;
   const std::size_t count = countLevels(raster, bytes.size() / size, name);
-  raster.levels.reserve(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    std::uint32_t level = 0;
-    for (char byte : bytes.substr(i * size, size)) level = level << 8 | static_cast<std::uint8_t>(byte);
-    raster.levels.push_back(static_cast<std::uint16_t>(std::min(level, raster.most)));
+  to.begin(raster);
+  std::vector<std::uint16_t> levels(raster.rowLevels());
+  for (std::size_t at = 0; at < count; at += levels.size()) {
+    const auto* const from = reinterpret_cast<const unsigned char*>(bytes.data()) + at * size;
+    for (std::size_t i = 0; i < levels.size(); ++i) {
+      const std::uint32_t level = size == 1 ? from[i] : std::uint32_t{from[2 * i]} << 8 | from[2 * i + 1];
+      levels[i] = static_cast<std::uint16_t>(std::min(level, raster.most));
+    }
+    to.row(levels);
   }
 }
 
-void readWords(Raster& raster, Cursor& cursor, const std::string& name) {
+void readWords(const RasterSize& raster, Cursor& cursor, const std::string& name, RasterRows& to) {
   const std::size_t count = countLevels(raster, cursor.afterBlank().size(), name);
-  raster.levels.reserve(count);
-  for (std::size_t i = 0; i < count; ++i)
-    raster.levels.push_back(
-        static_cast<std::uint16_t>(cursor.number(0, static_cast<std::int32_t>(raster.most))));
+  to.begin(raster);
+  std::vector<std::uint16_t> levels(raster.rowLevels());
+  for (std::size_t at = 0; at < count; at += levels.size()) {
+    for (std::uint16_t& level : levels)
+      level = static_cast<std::uint16_t>(cursor.number(0, static_cast<std::int32_t>(raster.most)));
+    to.row(levels);
+  }
 }
 
 }  // namespace
 
-Raster readNetpbm(std::string_view content, const std::string& name) {
+void readNetpbm(std::string_view content, const std::string& name, RasterRows& to) {
   Cursor cursor(content, name);
   const std::string_view kind = cursor.word();
   if (kind.size() != 2) failOn(name, "no blank behind " + std::string(kind.substr(0, 2)));
-  Raster raster;
+  RasterSize raster;
   raster.channels = kind[1] == '2' || kind[1] == '5' ? 1 : 3;
   raster.width = cursor.number(1, kLongestSide);
   raster.height = cursor.number(1, kLongestSide);
   raster.most = static_cast<std::uint32_t>(cursor.number(1, 65535));
   if (kind[1] == '2' || kind[1] == '3')
-    readWords(raster, cursor, name);
+    readWords(raster, cursor, name, to);
   else
-    readBytes(raster, cursor.afterBlank(), name);
-  return raster;
+    readBytes(raster, cursor.afterBlank(), name, to);
 }
 
 Picture readPfm(std::string_view content, const std::string& name) {

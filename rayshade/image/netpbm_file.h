@@ -11,7 +11,7 @@
 namespace rayshade {
 
 // `name`: of the file, for messages.
-Raster readNetpbm(std::string_view content, const std::string& name);
+void readNetpbm(std::string_view content, const std::string& name, RasterRows& to);
 Picture readPfm(std::string_view content, const std::string& name);
 
 }  // namespace rayshade

@@ -105,7 +105,7 @@ void PngStream::finish() {
   state_->run([&] { png_write_end(state_->png, state_->info); });
 }
 
-Raster readPng(std::string_view content, const std::string& name) {
+void readPng(std::string_view content, const std::string& name, RasterRows& to) {
   PngMessage message;
   PngSource source{content};
   PngReader reader;
@@ -116,34 +116,41 @@ Raster readPng(std::string_view content, const std::string& name) {
   if (reader.png != nullptr) reader.info = png_create_info_struct(reader.png);
   if (reader.info == nullptr) giveUp(name, message);
 
+  int passes = 1;
   run([&] {
     png_set_read_fn(reader.png, &source, PngSource::read);
     png_read_info(reader.png, reader.info);
     png_set_expand(reader.png);  // palettes and fewer than 8 bits to 8, a transparent colour to alpha
-    png_set_interlace_handling(reader.png);
+    passes = png_set_interlace_handling(reader.png);
     png_read_update_info(reader.png, reader.info);
   });
-  Raster raster;
-  raster.width = static_cast<std::int32_t>(png_get_image_width(reader.png, reader.info));
-  raster.height = static_cast<std::int32_t>(png_get_image_height(reader.png, reader.info));
-  raster.channels = png_get_channels(reader.png, reader.info);
+  RasterSize size;
+  size.width = static_cast<std::int32_t>(png_get_image_width(reader.png, reader.info));
+  size.height = static_cast<std::int32_t>(png_get_image_height(reader.png, reader.info));
+  size.channels = png_get_channels(reader.png, reader.info);
   const bool wide = png_get_bit_depth(reader.png, reader.info) == 16;
-  raster.most = wide ? 65535 : 255;
-  raster.levels.resize(countLevels(raster, kMostPerByte * content.size(), name));
+  size.most = wide ? 65535 : 255;
+  countLevels(size, kMostPerByte * content.size(), name);
+  to.begin(size);
 
-  // Rows of bytes lie at the beginning of the levels until all are there.
-  auto* const bytes = reinterpret_cast<std::uint8_t*>(raster.levels.data());
+  // Of an interlaced picture all rows are there, and each pass fills some of their pixels.
+  const auto height = static_cast<std::size_t>(size.height), held = passes > 1 ? height : 1;
   const std::size_t length = png_get_rowbytes(reader.png, reader.info);
-  std::vector<png_bytep> rows;
-  for (std::size_t row = 0; row < static_cast<std::size_t>(raster.height); ++row)
-    rows.push_back(bytes + row * length);
-  run([&] {
-    png_read_image(reader.png, rows.data());
-    png_read_end(reader.png, nullptr);
-  });
-  for (std::size_t i = raster.levels.size(); i-- > 0;)
-    raster.levels[i] = static_cast<std::uint16_t>(wide ? bytes[2 * i] << 8 | bytes[2 * i + 1] : bytes[i]);
-  return raster;
+  std::vector<std::uint8_t> bytes(held * length);
+  const auto read = [&](std::size_t row) {
+    run([&] { png_read_row(reader.png, &bytes[row % held * length], nullptr); });
+  };
+  for (int pass = 1; pass < passes; ++pass)
+    for (std::size_t row = 0; row < height; ++row) read(row);
+  std::vector<std::uint16_t> levels(size.rowLevels());
+  for (std::size_t row = 0; row < height; ++row) {
+    read(row);
+    const std::uint8_t* const from = &bytes[row % held * length];
+    for (std::size_t i = 0; i < levels.size(); ++i)
+      levels[i] = static_cast<std::uint16_t>(wide ? from[2 * i] << 8 | from[2 * i + 1] : from[i]);
+    to.row(levels);
+  }
+  run([&] { png_read_end(reader.png, nullptr); });
 }
 
 }  // namespace rayshade

@@ -27,6 +27,6 @@ class PngStream {
 };
 
 // `name`: of the file, for messages.
-Raster readPng(std::string_view content, const std::string& name);
+void readPng(std::string_view content, const std::string& name, RasterRows& to);
 
 }  // namespace rayshade

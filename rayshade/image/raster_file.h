@@ -9,7 +9,11 @@
 
 namespace rayshade {
 
-// `content`: of the file; `name`: of the file, for messages.  Throws std::runtime_error.
+// `content`: of the file; `name`: of the file, for messages.  Throws std::runtime_error.  Row by row: nothing is held but a row,
+// except of interlaced PNG, progressive JPEG and RLE, whose rows are complete at the end only.
+void readRaster(std::string_view content, const std::string& name, RasterRows& to);
+
+// The whole in memory.
 Raster readRaster(std::string_view content, const std::string& name);
 
 }  // namespace rayshade

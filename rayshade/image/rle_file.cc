@@ -134,6 +134,8 @@ class RleReader {
 
 }  // namespace
 
-Raster readRle(std::string_view content, const std::string& name) { return RleReader(content, name).read(); }
+void readRle(std::string_view content, const std::string& name, RasterRows& to) {
+  handOn(RleReader(content, name).read(), to);
+}
 
 }  // namespace rayshade

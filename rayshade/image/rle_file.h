@@ -11,6 +11,6 @@ namespace rayshade {
 
 // One or three channels, with or without alpha.  Colour maps are passed over and pixels that are not set have the background
 // where the file says so, else 0, as in rayshade.
-Raster readRle(std::string_view content, const std::string& name);
+void readRle(std::string_view content, const std::string& name, RasterRows& to);
 
 }  // namespace rayshade

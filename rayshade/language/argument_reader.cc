@@ -71,6 +71,12 @@ std::string ArgumentReader::inputFile() {
   return std::get<std::string>(std::move(found));
 }
 
+std::shared_ptr<const Image> ArgumentReader::inputImage() {
+  auto read = images_.read(inputFile());
+  if (const auto* problem = std::get_if<FileProblem>(&read)) fail(problem->message);
+  return std::get<std::shared_ptr<const Image>>(std::move(read));
+}
+
 bool ArgumentReader::accept(std::string_view word) {
   if (token().kind != Token::Kind::word || tokens_.text() != word) return false;
   tokens_.advance();

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "rayshade/base/transform.h"
+#include "rayshade/image/image_library.h"
 #include "rayshade/language/expression_reader.h"
 #include "rayshade/language/surface_table.h"
 #include "rayshade/language/tokens.h"
@@ -27,14 +28,15 @@ class ArgumentReader final : public Arguments {
     TokenPlace place;
   };
 
-  ArgumentReader(Tokens& tokens, SurfaceTable& surfaces, Warn warn)
-      : tokens_(tokens), surfaces_(surfaces), warn_(std::move(warn)) {}
+  ArgumentReader(Tokens& tokens, SurfaceTable& surfaces, ImageLibrary& images, Warn warn)
+      : tokens_(tokens), surfaces_(surfaces), images_(images), warn_(std::move(warn)) {}
 
   // Arguments
   bool numberFollows() override;
   bool accept(std::string_view word) override;
   bool fileNameFollows() override { return unread_.has_value() || tokens_.fileNameFollows(); }
   std::string inputFile() override;
+  std::shared_ptr<const Image> inputImage() override;
   Surface surface() override;
   void warn(const std::string& message) override { warn_(subject, message); }
   [[noreturn]] void fail(const std::string& message) override { throw Fault{message, subject}; }
@@ -69,6 +71,7 @@ class ArgumentReader final : public Arguments {
 
   Tokens& tokens_;
   SurfaceTable& surfaces_;
+  ImageLibrary& images_;
   Warn warn_;
   std::optional<UnreadName> unread_;
 };

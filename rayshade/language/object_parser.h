@@ -11,12 +11,12 @@ namespace rayshade {
 class ObjectParser {
  public:
   // `flipNormals`: of the shapes that can turn them.
-  ObjectParser(Tokens& tokens, FaultLog& log, SceneSink& sink, bool flipNormals)
+  ObjectParser(Tokens& tokens, FaultLog& log, SceneSink& sink, ImageLibrary& images, bool flipNormals)
       : tokens_(tokens),
         log_(log),
         items_(sink),
         flipNormals_(flipNormals),
-        in_(tokens, surfaces_,
+        in_(tokens, surfaces_, images,
             [&log](const TokenPlace& place, const std::string& text) { log.warn(place, text); }) {}
 
   ArgumentReader& arguments() { return in_; }

@@ -16,7 +16,7 @@ class Parser {
       : tokens_(tokens),
         print_(options.print),
         log_(tokens, options.warn),
-        objects_(tokens, log_, sink, options.flipTriangleNormals),
+        objects_(tokens, log_, sink, *options.images, options.flipTriangleNormals),
         in_(objects_.arguments()) {}
 
   // Reads all there is; the messages of what is wrong are in errors() then.

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "rayshade/base/error.h"
+#include "rayshade/image/image_library.h"
 #include "rayshade/scene/items.h"
 #include "rayshade/scene/settings.h"
 
@@ -25,6 +26,8 @@ struct ParseOptions {
   std::function<void(const std::string&)>
       warn;  // gets complete lines `file:line:column: warning: ...`; may be empty
   std::function<void(const std::string&)> print;  // gets what `print` statements print; may be empty
+  // Pictures that have been read; textures and tasks find the pixels as long as it lives.
+  std::shared_ptr<ImageLibrary> images = std::make_shared<ImageLibrary>();
 };
 
 // Aggregates, names and instances of names may be this deep inside of each other, all levels added up.

@@ -61,12 +61,12 @@ std::uint64_t imageBytes(const SceneNode& node) {
   std::uint64_t bytes = 0;
   for (const PlacedTexture& placed : node.textures)
     if (const ImageTexture* texture = std::get_if<ImageTexture>(&placed.texture); texture && texture->image)
-      bytes += bytesOf(texture->image->pixels);
+      bytes += texture->image->bytes();
   return bytes;
 }
 
 std::uint64_t bytesOutside(const SceneNode& node) {
-  std::uint64_t bytes = bytesOf(node.transforms) + bytesOf(node.textures) + imageBytes(node);
+  std::uint64_t bytes = bytesOf(node.transforms) + bytesOf(node.textures);
   for (const PlacedTexture& placed : node.textures) bytes += bytesOf(placed.transforms);
   return bytes;
 }

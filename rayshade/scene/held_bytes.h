@@ -18,6 +18,7 @@ inline constexpr std::uint64_t kTableEntryBytes = 48;  // of a hash table: numbe
 std::uint64_t bytesOutside(const AnyShape& shape);
 std::uint64_t bytesOutside(const AllShapes::Vectors& shapes);
 std::uint64_t bytesOutside(const SceneNode& node);
-std::uint64_t imageBytes(const SceneNode& node);  // of that, pictures
+// Of pictures: they lie once on each machine, and in no task.
+std::uint64_t imageBytes(const SceneNode& node);
 
 }  // namespace rayshade

@@ -74,8 +74,6 @@ Color finish(Color sum, const ReturnPath& back, Color transmitted, Color reflect
 }
 
 Color combine(const Intersection& hit, const Gathered& gathered, const SceneSettings& settings) {
-  if (hit.lightsAdded)
-    return finish(*hit.lightsAdded, hit.back, gathered.transmitted, gathered.reflected, settings);
   const Facing facing{hit.normal, hit.geometricNormal, hit.smooth, mirrored(hit.direction, hit.normal)};
   Color sum = hit.surface.ambient * settings.ambient;
   forEachLightPoint(settings, [&](const LightPoint& point) {

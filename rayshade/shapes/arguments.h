@@ -5,6 +5,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <memory>
 #include <string>
 #include <string_view>
 
@@ -14,6 +15,8 @@
 #include "rayshade/optics/surface.h"
 
 namespace rayshade {
+
+struct Image;
 
 class Arguments {
  public:
@@ -25,7 +28,9 @@ class Arguments {
   virtual bool accept(std::string_view word) = 0;  // takes the next word if it is this keyword
   virtual bool fileNameFollows() = 0;              // is the next token a name that is not a keyword?
   virtual std::string inputFile() = 0;             // takes the name of a file to be read: where it is found
-  virtual Surface surface() = 0;                   // a surface-spec: a name, cursurf, components
+  // The picture in the file whose name comes next; it fails if it cannot be read.
+  virtual std::shared_ptr<const Image> inputImage() = 0;
+  virtual Surface surface() = 0;  // a surface-spec: a name, cursurf, components
   // Something is odd but the scene goes on (`file:line: warning: ...`).
   virtual void warn(const std::string& message) = 0;
   // The statement is wrong; does not return.

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rayshade/textures/image.h"
 
-#include "rayshade/image/image_file.h"
-
 namespace rayshade {
 namespace {
 
@@ -93,9 +91,7 @@ bool tiled(double u, double v, double tilesU, double tilesV) {
 
 std::optional<ImageTexture> ImageTexture::parse(Arguments& in) {
   ImageTexture texture;
-  auto read = readImage(in.inputFile());
-  if (const auto* problem = std::get_if<FileProblem>(&read)) in.fail(problem->message);
-  texture.image = std::make_shared<const Image>(std::get<Image>(std::move(read)));
+  texture.image = in.inputImage();
   for (;;) {
     if (in.accept("component")) {
       const auto component = acceptComponent(in);
@@ -123,7 +119,7 @@ std::optional<ImageTexture> ImageTexture::parse(Arguments& in) {
 }
 
 void ImageTexture::apply(TextureHit& hit) const {
-  if (!tiled(hit.u, hit.v, tilesU, tilesV)) return;
+  if (!image || !image->pixels || !tiled(hit.u, hit.v, tilesU, tilesV)) return;
   const Texel x = texelAt(hit.u, image->width), y = texelAt(hit.v, image->height);
 
   if (component == Component::bump) {

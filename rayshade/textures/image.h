@@ -39,7 +39,7 @@ struct ImageTexture {
       base;  // `textsurf`: what the picture is applied to, in place of the surface of the hit
   double tilesU = 0, tilesV = 0;
   Mapping mapping;
-  std::shared_ptr<const Image> image;  // shared by copies; set and whole after parse and decode
+  std::shared_ptr<const Image> image;  // shared by copies; after decode without pixels
 
   static constexpr std::string_view keyword = "image";
   static constexpr TextureNeeds needs = TextureNeeds::coordinates;

@@ -7,10 +7,11 @@
 namespace rayshade {
 
 void takeAnyPicture(std::span<const std::byte> input) {
-  const auto read = decodeImage(input, "p");
+  SharedBytes shared;
+  const auto read = decodeImage(input, "p", shared);
   const auto* const image = std::get_if<Image>(&read);
   const auto* const problem = std::get_if<FileProblem>(&read);
-  if (image != nullptr ? !isWhole(*image) : problem->message.size() <= 3) std::abort();
+  if (image != nullptr ? !isPossible(*image) || !image->pixels : problem->message.size() <= 3) std::abort();
 }
 
 }  // namespace rayshade

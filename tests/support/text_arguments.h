@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "rayshade/image/image_library.h"
 #include "rayshade/shapes/arguments.h"
 
 namespace rayshade {
@@ -35,6 +36,11 @@ class TextArguments final : public Arguments {
     if (at_ == words_.size()) fail("a file name is missing");
     namesFile_ = true;
     return words_[at_++];
+  }
+  std::shared_ptr<const Image> inputImage() override {
+    auto read = images_.read(inputFile());
+    if (const auto* problem = std::get_if<FileProblem>(&read)) fail(problem->message);
+    return std::get<std::shared_ptr<const Image>>(std::move(read));
   }
   Surface surface() override { return defaultSurface(); }
   void warn(const std::string& message) override { warnings_.push_back(message); }
@@ -61,6 +67,7 @@ class TextArguments final : public Arguments {
     return error == std::errc() && stop == end ? std::optional(value) : std::nullopt;
   }
 
+  ImageLibrary images_;
   std::vector<std::string> words_;
   std::size_t at_ = 0;
   bool namesFile_ = false;

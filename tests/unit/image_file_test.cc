@@ -6,6 +6,10 @@
 #include <png.h>
 
 #include <algorithm>
+#include <fstream>
+
+#include "tests/support/pixels.h"
+#include "tests/support/scratch_directory.h"
 
 namespace rayshade {
 namespace {
@@ -16,21 +20,21 @@ Bytes bytesOf(std::string_view text) {
 }
 
 Image imageOf(const Bytes& bytes) {
-  auto read = decodeImage(bytes, "p");
+  SharedBytes shared;  // goes; what is mapped stays
+  auto read = decodeImage(bytes, "p", shared);
   if (const auto* problem = std::get_if<FileProblem>(&read)) {
     ADD_FAILURE() << problem->message;
     return {};
   }
-  EXPECT_TRUE(isWhole(std::get<Image>(read)));
+  EXPECT_TRUE(isPossible(std::get<Image>(read)));
   return std::get<Image>(read);
 }
 
 std::string problemOf(const Bytes& bytes) {
-  const auto read = decodeImage(bytes, "p");
+  SharedBytes shared;
+  const auto read = decodeImage(bytes, "p", shared);
   return std::holds_alternative<FileProblem>(read) ? std::get<FileProblem>(read).message : "";
 }
-
-using Pixels = std::vector<std::uint8_t>;
 
 // A PNG with the rows given from the top, as they are packed in the file.
 struct PngSpec {
@@ -80,12 +84,12 @@ TEST(GenericImage, IsALineAndTheBytesInTheirOrder) {
   EXPECT_EQ(image.width, 2);
   EXPECT_EQ(image.height, 1);
   EXPECT_EQ(image.channels, 3);
-  EXPECT_EQ(image.pixels, (Pixels{'a', 'b', 'c', 'd', 'e', 'f'}));
+  EXPECT_EQ(pixelsOf(image), (Pixels{'a', 'b', 'c', 'd', 'e', 'f'}));
   EXPECT_EQ(*image.pixel(1, 0), 'd');
 }
 
 TEST(GenericImage, MayHaveBytesToSpareAndPixelsThatLookLikeText) {
-  EXPECT_EQ(imageOf(bytesOf("1 1\n\n 7 more")).pixels, (Pixels{'\n', ' ', '7'}));
+  EXPECT_EQ(pixelsOf(imageOf(bytesOf("1 1\n\n 7 more"))), (Pixels{'\n', ' ', '7'}));
 }
 
 TEST(GenericImage, ThatIsTooShortIsRefusedBeforeMemoryIsTaken) {
@@ -102,7 +106,7 @@ TEST(GenericImage, WithABadFirstLineIsRefused) {
 TEST(PngImage, StandsUpright) {
   const Image image = imageOf(pngOf(rgbSpec()));
   EXPECT_EQ(image.channels, 3);
-  EXPECT_EQ(image.pixels, (Pixels{7, 8, 9, 10, 11, 12, 1, 2, 3, 4, 5, 6}));
+  EXPECT_EQ(pixelsOf(image), (Pixels{7, 8, 9, 10, 11, 12, 1, 2, 3, 4, 5, 6}));
 }
 
 TEST(PngImage, MayBeInterlaced) {
@@ -116,7 +120,7 @@ TEST(PngImage, MayBeInterlaced) {
     for (int x = 0; x < 27; ++x) spec.rows.back().push_back(static_cast<std::uint8_t>(y * 27 + x));
   }
   for (int y = 8; y >= 0; --y) expected.insert(expected.end(), spec.rows[y].begin(), spec.rows[y].end());
-  EXPECT_EQ(imageOf(pngOf(spec)).pixels, expected);
+  EXPECT_EQ(pixelsOf(imageOf(pngOf(spec))), expected);
 }
 
 TEST(PngImage, KeepsGrayAndAlpha) {
@@ -125,14 +129,14 @@ TEST(PngImage, KeepsGrayAndAlpha) {
   spec.type = PNG_COLOR_TYPE_GRAY;
   spec.rows = {{1, 200}};
   EXPECT_EQ(imageOf(pngOf(spec)).channels, 1);
-  EXPECT_EQ(imageOf(pngOf(spec)).pixels, (Pixels{1, 200}));
+  EXPECT_EQ(pixelsOf(imageOf(pngOf(spec))), (Pixels{1, 200}));
   spec.type = PNG_COLOR_TYPE_GRAY_ALPHA;
   spec.rows = {{1, 200, 3, 4}};
   EXPECT_EQ(imageOf(pngOf(spec)).channels, 2);
   spec.type = PNG_COLOR_TYPE_RGB_ALPHA;
   spec.rows = {{1, 2, 3, 4, 5, 6, 7, 8}};
   EXPECT_EQ(imageOf(pngOf(spec)).channels, 4);
-  EXPECT_EQ(imageOf(pngOf(spec)).pixels, (Pixels{1, 2, 3, 4, 5, 6, 7, 8}));
+  EXPECT_EQ(pixelsOf(imageOf(pngOf(spec))), (Pixels{1, 2, 3, 4, 5, 6, 7, 8}));
 }
 
 TEST(PngImage, SpreadsFewBitsAndRoundsSixteen) {
@@ -141,10 +145,10 @@ TEST(PngImage, SpreadsFewBitsAndRoundsSixteen) {
   spec.type = PNG_COLOR_TYPE_GRAY;
   spec.depth = 1;
   spec.rows = {{0x40}};
-  EXPECT_EQ(imageOf(pngOf(spec)).pixels, (Pixels{0, 255}));
+  EXPECT_EQ(pixelsOf(imageOf(pngOf(spec))), (Pixels{0, 255}));
   spec.depth = 16;
   spec.rows = {{0x80, 0x80, 0x00, 0xff}};  // 32896 / 257 = 128, 255 / 257 = 0.99
-  EXPECT_EQ(imageOf(pngOf(spec)).pixels, (Pixels{128, 1}));
+  EXPECT_EQ(pixelsOf(imageOf(pngOf(spec))), (Pixels{128, 1}));
 }
 
 TEST(PngImage, LooksUpPalettes) {
@@ -153,9 +157,9 @@ TEST(PngImage, LooksUpPalettes) {
   spec.type = PNG_COLOR_TYPE_PALETTE;
   spec.palette = {{1, 2, 3}, {4, 5, 6}};
   spec.rows = {{1, 0}};
-  EXPECT_EQ(imageOf(pngOf(spec)).pixels, (Pixels{4, 5, 6, 1, 2, 3}));
+  EXPECT_EQ(pixelsOf(imageOf(pngOf(spec))), (Pixels{4, 5, 6, 1, 2, 3}));
   spec.paletteAlpha = {9};
-  EXPECT_EQ(imageOf(pngOf(spec)).pixels, (Pixels{4, 5, 6, 255, 1, 2, 3, 9}));
+  EXPECT_EQ(pixelsOf(imageOf(pngOf(spec))), (Pixels{4, 5, 6, 255, 1, 2, 3, 9}));
 }
 
 TEST(PngImage, CutAnywhereIsRefusedOrWhole) {
@@ -168,11 +172,12 @@ TEST(PngImage, CutAnywhereIsRefusedOrWhole) {
 
 TEST(PngImage, WithAnyByteChangedDoesNoHarm) {
   const Bytes whole = pngOf(rgbSpec());
+  SharedBytes shared;
   for (std::size_t at = 0; at < whole.size(); ++at) {
     for (std::uint8_t change : {0x01, 0x80, 0xff}) {
       Bytes changed = whole;
       changed[at] ^= std::byte{change};
-      decodeImage(changed, "p");
+      decodeImage(changed, "p", shared);
     }
   }
 }
@@ -195,22 +200,40 @@ TEST(PngImage, ThatClaimsMoreThanItCanHoldIsRefused) {
 }
 
 TEST(ImageFile, ThatIsMissingOrADirectoryIsNamed) {
-  const auto missing = readImage("/nowhere/p.png");
+  SharedBytes shared;
+  const auto missing = readImage("/nowhere/p.png", shared);
   ASSERT_TRUE(std::holds_alternative<FileProblem>(missing));
   EXPECT_EQ(std::get<FileProblem>(missing).message, "/nowhere/p.png: no such file");
-  EXPECT_TRUE(std::holds_alternative<FileProblem>(readImage("/")));
-  EXPECT_TRUE(std::holds_alternative<FileProblem>(readImage("/dev/zero")));
+  EXPECT_TRUE(std::holds_alternative<FileProblem>(readImage("/", shared)));
+  EXPECT_TRUE(std::holds_alternative<FileProblem>(readImage("/dev/zero", shared)));
 }
 
-TEST(Image, ThatDoesNotFillItsSizeIsNotDecoded) {
-  Image image{2, 1, 1, {1, 2}};
-  const Bytes good = encode(image);
+TEST(ImageFile, ThatIsLargeIsReadFromACopyWithTheSamePixels) {
+  const ScratchDirectory scratch("image-file");
+  std::string text = "900 800\n";
+  while (text.size() < 9 + 900 * 800 * 3) text += static_cast<char>(text.size() * 31 >> 3);
+  std::ofstream(scratch / "large.mtv", std::ios::binary) << text;
+  SharedBytes shared;
+  const auto read = readImage(scratch / "large.mtv", shared);
+  ASSERT_TRUE(std::holds_alternative<Image>(read)) << std::get<FileProblem>(read).message;
+  EXPECT_TRUE(pixelsOf(std::get<Image>(read)) == pixelsOf(imageOf(bytesOf(text))));
+}
+
+TEST(Image, IdsTellSizesAndPixelsApart) {
+  const auto idOf = [](const char* text) { return imageOf(bytesOf(text)).id; };
+  EXPECT_EQ(idOf("2 1\nabcdef"), idOf("2 1\nabcdef"));
+  EXPECT_NE(idOf("2 1\nabcdef"), idOf("2 1\nabcdeg"));
+  EXPECT_NE(idOf("2 1\nabcdef"), idOf("1 2\nabcdef"));
+}
+
+TEST(Image, OfAnImpossibleSizeIsNotDecoded) {
+  const Bytes good = encode(imageOfPixels(2, 1, 1, {1, 2}));
   ASSERT_TRUE(decode<Image>(good));
   EXPECT_EQ(encode(*decode<Image>(good)), good);
-  image.width = 3;
-  EXPECT_FALSE(decode<Image>(encode(image)));
   EXPECT_FALSE(decode<Image>(encode(Image{})));
-  EXPECT_FALSE(decode<Image>(encode(Image{-1, -2, 1, {1, 2}})));
+  EXPECT_FALSE(decode<Image>(encode(imageOfPixels(-1, -2, 1, {}))));
+  EXPECT_FALSE(decode<Image>(encode(imageOfPixels(1, 2, 5, {}))));
+  EXPECT_FALSE(decode<Image>(encode(imageOfPixels(2'000'000, 1, 1, {}))));
 }
 
 }  // namespace

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include "tests/support/pixels.h"
 #include "tests/support/texture_subjects.h"
 
 namespace rayshade {
 namespace {
 
-ImageTexture textureOf(std::int32_t width, std::int32_t height, std::int32_t channels,
-                       std::vector<std::uint8_t> bytes) {
+ImageTexture textureOf(std::int32_t width, std::int32_t height, std::int32_t channels, const Pixels& bytes) {
   ImageTexture texture;
-  texture.image = std::make_shared<const Image>(Image{width, height, channels, std::move(bytes)});
+  texture.image = std::make_shared<const Image>(imageOfPixels(width, height, channels, bytes));
   return texture;
 }
 

@@ -10,6 +10,7 @@
 
 #include "rayshade/image/image_file.h"
 #include "rayshade/image/raster_file.h"
+#include "tests/support/pixels.h"
 #include "tests/support/seeded_random.h"
 
 namespace rayshade {
@@ -65,8 +66,9 @@ TEST(NetpbmRaster, MayHaveTwoBytesForALevel) {
 
 TEST(NetpbmRaster, IsScaledToEightBitsAndStandsUprightAsATexture) {
   const std::string text = "P2 1 3 1000 1000 500 1";
-  const auto image = decodeImage(std::as_bytes(std::span(text)), "p");
-  EXPECT_EQ(std::get<Image>(image).pixels, (std::vector<std::uint8_t>{0, 128, 255}));
+  SharedBytes shared;
+  const auto image = decodeImage(std::as_bytes(std::span(text)), "p", shared);
+  EXPECT_EQ(pixelsOf(std::get<Image>(image)), (Pixels{0, 128, 255}));
 }
 
 TEST(NetpbmRaster, ThatIsCutOrDamagedIsRefused) {
