@@ -35,7 +35,8 @@ Refinement refinementOf(const PictureSpec& spec) {
   return tiny && spec.refinement == Refinement::crosses ? Refinement::all : spec.refinement;
 }
 
-// What decides about the pixels that are wanted: one more on each side.  Crosses depend on all that were swept before them: on
+// What decides about the pixels that are wanted: one more on each side.
+// differs from rayshade4: the border of a window is none of the picture; and without contrast all pixels get all samples.  Crosses depend on all that were swept before them: on
 // all lines above, and as the line below is swept, on two more.
 PixelArea sampledArea(const PixelArea& wanted, const PictureSpec& spec, Refinement refinement) {
   const std::int32_t right = wanted.x + wanted.width, bottom = wanted.y + wanted.height;

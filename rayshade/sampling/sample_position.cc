@@ -70,6 +70,7 @@ class Columns {
 };
 
 // What the samples of a frame have in common.
+// differs from rayshade4: samples are points of a net unless strata are asked for (sample_plan.h).
 struct SampleGrid {
   SamplePlan plan;
   bool jitter;
