@@ -55,7 +55,8 @@ TEST(Symbols, SourcesUseNoInexactFunctionOfTheLibrary) {
       ++looked;
       std::ifstream in(file);
       for (std::string line; std::getline(in, line);)
-        EXPECT_FALSE(std::regex_search(line, inexact)) << file << ": " << line;
+        if (line.find("std::") != std::string::npos)  // regular expressions take long
+          EXPECT_FALSE(std::regex_search(line, inexact)) << file << ": " << line;
     }
   EXPECT_GT(looked, 250u);
 }
