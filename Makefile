@@ -194,11 +194,11 @@ check-threads: $(BUILD)/threaded/program $(BIN)/rayshade
 	@tests/support/check_threads $^
 build-tests: all $(test_programs)
 test: build-tests
-	@tests/support/run_tests $(BIN)
+	@tests/support/run_shards $(BIN) $(notdir $(test_programs))
 
 # Sanitizers make tests eight times slower: fewer random scenes than without.
 guarded: $(BIN)/guarded-tests
-	@RAYSHADE_TEST_SEEDS=$${RAYSHADE_TEST_SEEDS:-30} tests/support/run_shards $(BIN) guarded-tests
+	@RAYSHADE_TEST_SEEDS=$${RAYSHADE_TEST_SEEDS:-20} tests/support/run_shards $(BIN) guarded-tests
 
 benches: $(benches)
 bench-embree: LIBRARIES += -lembree3
@@ -208,7 +208,7 @@ bench: $(BIN)/rayshade $(BIN)/rayshade-error $(BIN)/spd
 	@PYTHONDONTWRITEBYTECODE=1 tests/bench/speed_and_error/run --bin $(BIN) docs
 
 bench-splitting: all benches
-	@tests/bench/splitting
+	@tests/bench/plot_splitting
 	@tests/bench/start_up || true
 	@tests/bench/memory || true
 

@@ -50,7 +50,7 @@ void forEachLightPoint(const SceneSettings& settings, Use&& use) {
 // What a light is asked for at a hit at `position` (world) of a ray with this key and sample number.
 inline LightQuery lightQuery(Vec3 position, RandomKey key, int sample, std::uint32_t light,
                              const SceneSettings& settings) {
-  return {position, child(key, Branch::light, light), sample, settings.samplesPerSide};
+  return {position, child(key, Branch::light, light), sample, settings.samples};
 }
 
 // How a hit is turned towards lights and viewer.  World space.

@@ -37,7 +37,7 @@ TEST(Symbols, ProgramsUseNoInexactFunctionOfTheLibrary) {
   for (const char* program : {"rayshade", "rayshade-error", "rayshade-host", "spd"}) {
     const std::string symbols =
         outputOf("nm --dynamic --undefined-only " + programDirectory() + "/" + program);
-    EXPECT_NE(symbols.find(" U fmod"), std::string::npos) << program << ": is anything found at all?";
+    EXPECT_NE(symbols.find(" U memcpy"), std::string::npos) << program << ": is anything found at all?";
     for (std::sregex_iterator at(symbols.begin(), symbols.end(), inexact), end; at != end; ++at)
       ADD_FAILURE() << program << " uses " << at->str();
   }
