@@ -22,7 +22,7 @@ UnitCounts unitsOf(const Report& r) {
           count(r.bytesIn),
           count(r.bytesOut),
           count(r.cellsServed),
-          count(r.cache.fetched)};
+          count(r.cache.fetchedBytes)};
 }
 
 double UnitCosts::of(const Report& counted) const {

@@ -16,7 +16,7 @@ namespace rayshade {
 inline constexpr std::size_t kUnitCount = 13;
 inline constexpr std::array<const char*, kUnitCount> kUnitNames{
     "rays",        "shadowRays", "visits",  "tests",    "hits",        "combined",    "messagesIn",
-    "messagesOut", "packets",    "bytesIn", "bytesOut", "cellsServed", "cacheFetched"};
+    "messagesOut", "packets",    "bytesIn", "bytesOut", "cellsServed", "fetchedBytes"};
 using UnitCounts = std::array<double, kUnitCount>;
 
 UnitCounts unitsOf(const Report& counted);
