@@ -10,12 +10,20 @@ void enlist(const std::vector<Slave>& slaves, Directory& directory) {
   directory.voxelTasks.clear();
   directory.pyramidTasks.clear();
   directory.shadeTasks.clear();
-  for (const Slave& slave : slaves) {
-    (slave.placement.role == Role::voxelTrace     ? directory.voxelTasks
-     : slave.placement.role == Role::pyramidTrace ? directory.pyramidTasks
-                                                  : directory.shadeTasks)
-        .push_back(slave.task);
-  }
+  directory.machines.clear();
+  std::map<std::string, std::uint32_t> machines;
+  const auto enlistRole = [&](Role role, std::vector<TaskId>& tasks) {
+    for (const Slave& slave : slaves) {
+      if (slave.placement.role != role) continue;
+      tasks.push_back(slave.task);
+      if (role == Role::shade) continue;
+      const auto next = static_cast<std::uint32_t>(machines.size());
+      directory.machines.push_back(machines.try_emplace(slave.placement.host, next).first->second);
+    }
+  };
+  enlistRole(Role::voxelTrace, directory.voxelTasks);
+  enlistRole(Role::pyramidTrace, directory.pyramidTasks);
+  enlistRole(Role::shade, directory.shadeTasks);
   directory.shadeWeights.assign(directory.shadeTasks.size(), 1);
 }
 

@@ -40,6 +40,8 @@ struct Directory {
   std::uint32_t clusters = 1;
   std::vector<std::uint32_t> voxels;  // by voxel: which task of a cluster has it
   std::vector<TaskId> pyramidTasks;   // task i belongs to cluster i modulo `clusters`
+  std::vector<std::uint32_t>
+      machines;  // where each task that traces stands, voxel tasks first: a number for each machine
   std::vector<TaskId> shadeTasks;
   std::vector<std::uint32_t> shadeWeights;  // in what proportion they are chosen
 
@@ -50,6 +52,9 @@ struct Directory {
 };
 // The tasks that trace, which number the intersections that they find: voxel tasks come first.
 inline std::size_t finderCount(const Directory& d) { return d.voxelTasks.size() + d.pyramidTasks.size(); }
+bool isTracer(const Directory& directory, TaskId task);
+// How many tasks trace on the machine of one of them, itself included; `finder`: its place among all that trace.
+std::uint32_t tracersBeside(const Directory& directory, std::size_t finder);
 // Does it fit together, and has every voxel of the tree an owner?
 bool isComplete(const Directory& directory, const BinTree& tree);
 // The place of a task among those of its role; nothing: it is not one of them.
@@ -65,7 +70,7 @@ void serialize(Archive& archive, ReplyTo& r) {
 
 template <class Archive>
 void serialize(Archive& archive, Directory& d) {
-  archive(d.voxelTasks, d.clusters, d.voxels, d.pyramidTasks, d.shadeTasks, d.shadeWeights);
+  archive(d.voxelTasks, d.clusters, d.voxels, d.pyramidTasks, d.machines, d.shadeTasks, d.shadeWeights);
 }
 
 }  // namespace rayshade

@@ -68,6 +68,6 @@ static_assert((AllMessages::forEach([]<Message M>() {}), true));
 // The names of all messages, by tag.
 std::vector<std::string> messageNames();
 
-inline constexpr std::uint8_t kWireVersion = 7;
+inline constexpr std::uint8_t kWireVersion = 8;
 
 }  // namespace rayshade

@@ -41,9 +41,9 @@ struct ReceivedBy {
 
 // Decodes and delivers one message of type M.  False: the packet is malformed.
 template <class M, class Task>
-bool deliver(Task& task, TaskId from, Epoch epoch, Reader& reader, Traffic& traffic) {
+bool deliver(Task& task, TaskId from, Epoch epoch, Reader& reader, PacketMemory& before, Traffic& traffic) {
   M message{};
-  reader(message);
+  serializeInPacket(reader, message, before);
   if (!reader.ok()) return false;
   ++traffic.messagesIn;
   if constexpr (kIsIn<M, typename Task::Accepted>) {
@@ -62,7 +62,7 @@ bool deliver(Task& task, TaskId from, Epoch epoch, Reader& reader, Traffic& traf
 // By tag.
 template <class Task>
 struct Deliveries {
-  using Deliver = bool (*)(Task&, TaskId, Epoch, Reader&, Traffic&);
+  using Deliver = bool (*)(Task&, TaskId, Epoch, Reader&, PacketMemory&, Traffic&);
   std::array<Deliver, AllMessages::size> of{};
   constexpr Deliveries() {
     std::size_t tag = 0;
@@ -94,10 +94,11 @@ void receivePacket(Task& task, TaskId from, std::span<const std::byte> bytes, Tr
     return;
   }
   static constexpr inbox_detail::Deliveries<Task> kDeliveries;
+  PacketMemory before;
   while (reader.left() > 0) {
     std::uint8_t tag = 0;
     reader(tag);
-    if (tag >= kDeliveries.of.size() || !kDeliveries.of[tag](task, from, epoch, reader, traffic)) {
+    if (tag >= kDeliveries.of.size() || !kDeliveries.of[tag](task, from, epoch, reader, before, traffic)) {
       ++traffic.refused;
       return;
     }

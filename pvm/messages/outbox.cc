@@ -11,8 +11,8 @@ void Outbox::recordPacket(Open& open, double begin) {
   const auto to = static_cast<std::int32_t>(open.to);
   std::uint32_t messages = 0;
   for (const Open::Content& content : open.contents) messages += content.messages;
-  record->add({nanoseconds(begin), nanoseconds(link_.now()), EventKind::encode, 0, to, open.packets, messages,
-               open.bytes.size()});
+  record->add({nanoseconds(begin), nanoseconds(link_.now()), EventKind::encode, 0, to, packetsTo_[to]++,
+               messages, open.bytes.size()});
   for (std::uint32_t tag = 0; tag < open.contents.size(); ++tag) {
     const Open::Content& content = open.contents[tag];
     if (content.messages > 0) record->at(begin, EventKind::content, to, tag, content.messages, content.bytes);

@@ -30,14 +30,18 @@ class Outbox {
                   "pvm/messages where it stands");
     Open& open = packetTo(to);
     const std::size_t before = open.bytes.size();
-    Writer{open.bytes}(M::tag, message);
+    {
+      Writer writer(open.bytes);
+      writer(M::tag);
+      serializeInPacket(writer, const_cast<M&>(message), open.memory);  // a Writer reads only
+    }
     posted(open, M::tag, open.bytes.size() - before);
   }
 
   // What is the same for all is encoded once.
   template <class M>
   void postToAll(std::span<const TaskId> tasks, const M& message) {
-    static_assert(kIsIn<M, AllMessages>);
+    static_assert(kIsIn<M, AllMessages> && M::isFact, "work looks at what is before it in its packet");
     Bytes encoded;
     Writer{encoded}(M::tag, message);
     for (const TaskId to : tasks) {
@@ -73,7 +77,7 @@ class Outbox {
   struct Open {
     TaskId to = kNobody;
     Bytes bytes;
-    std::uint32_t packets = 0;  // that have gone to this task
+    PacketMemory memory;
     struct Content {
       std::uint32_t messages = 0, bytes = 0;
     };
@@ -87,6 +91,7 @@ class Outbox {
     if (last_->bytes.empty()) {
       last_->bytes.reserve(kFull + kRoom);
       Writer{last_->bytes}(kWireVersion, epoch_);
+      last_->memory = {};
     }
     return *last_;
   }
@@ -104,7 +109,6 @@ class Outbox {
     ++traffic.packetsOut;
     link_.send(open.to, open.bytes);
     if (record != nullptr) recordPacket(open, begin);
-    ++open.packets;
     open.bytes.clear();
     if (open.bytes.capacity() > 2 * kFull) open.bytes = Bytes{};  // one large message does not stay in memory
   }
@@ -115,6 +119,7 @@ class Outbox {
   Epoch epoch_{};
   std::unordered_map<std::int32_t, Open> open_;  // node-based: last_ stays valid
   Open* last_ = nullptr;
+  std::unordered_map<std::int32_t, std::uint32_t> packetsTo_;  // that went while a record was kept
 };
 
 }  // namespace rayshade

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "pvm/messages/addresses.h"
+#include "pvm/messages/packet_memory.h"
 #include "rayshade/base/type_list.h"
 #include "rayshade/sampling/sampler.h"
 #include "rayshade/shading/combine.h"
@@ -143,9 +143,56 @@ void serializeEach(Archive& archive, List& list, std::size_t leastBytes, Element
     for (auto& value : list) element(value);
   }
 }
+
+// Bits 0 and 1: the form of the record; the others: what is not as in the ray before, or more than a byte.
 template <class Archive>
-void serialize(Archive& archive, RayTask& m) {
-  archive(m.ray, m.step, m.to);
+void serialize(Archive& archive, RayTask& m, PacketMemory& before) {
+  constexpr std::uint8_t kTask = 4, kSlot = 8, kFarStep = 16, kKind = 32, kMedia = 64, kUnknown = 128;
+  Ray& ray = m.ray;
+  std::uint8_t differs = 0;
+  if constexpr (!Archive::kReading) {
+    const bool sameKind = sameBits(ray.contribution, before.contribution) && ray.depth == before.depth &&
+                          ray.sample == before.sample && sameBits(ray.moment.time, before.moment.time) &&
+                          ray.moment.frame == before.moment.frame && sameBits(ray.extinct, before.extinct);
+    differs = static_cast<std::uint8_t>(
+        static_cast<int>(formOf(m.to.record, before.to.record + 1)) |
+        (m.to.task == before.to.task ? 0 : kTask) | (m.to.slot == before.to.slot ? 0 : kSlot) |
+        (m.step < 256 ? 0 : kFarStep) | (sameKind ? 0 : kKind) | (ray.media.empty() ? 0 : kMedia));
+  }
+  archive(differs, ray.origin.x, ray.origin.y, ray.origin.z, ray.direction.x, ray.direction.y,
+          ray.direction.z, ray.key);
+  if constexpr (Archive::kReading) {
+    if (differs & kUnknown) return archive.fail();
+    m.to.task = before.to.task;
+    m.to.slot = before.to.slot;
+  }
+  if (differs & kFarStep) {
+    archive(m.step);
+  } else {
+    auto step = static_cast<std::uint8_t>(m.step);
+    archive(step);
+    m.step = step;
+  }
+  if (differs & kTask) archive(m.to.task);
+  if (differs & kSlot) archive(m.to.slot);
+  serializeRecord(archive, m.to.record, before.to.record + 1, static_cast<RecordForm>(differs & 3));
+  before.to = m.to;
+  if (differs & kKind) {
+    serializeSparse(archive, Usual{ray.moment.time, 0.0}, Usual{ray.moment.frame, 0}, Usual{ray.depth, 0},
+                    Usual{ray.sample, 0}, Usual{ray.contribution, kWhite}, Usual{ray.extinct, 1.0});
+    before.moment = ray.moment;
+    before.depth = ray.depth;
+    before.sample = ray.sample;
+    before.contribution = ray.contribution;
+    before.extinct = ray.extinct;
+  } else if constexpr (Archive::kReading) {
+    ray.moment = before.moment;
+    ray.depth = before.depth;
+    ray.sample = before.sample;
+    ray.contribution = before.contribution;
+    ray.extinct = before.extinct;
+  }
+  if (differs & kMedia) archive(ray.media);
 }
 
 template <class Archive>
@@ -246,10 +293,41 @@ void serialize(Archive& archive, TileDone& m) {
   serializeColors(archive, m.colors.whole);
 }
 
+// Bits 0 and 1: the form of the record; bit 2: another slot than in the answer before; then the form of the colour.
 template <class Archive>
-void serialize(Archive& archive, Answer& m) {
-  archive(m.record, m.slot);
-  serializeCompact(archive, m.color);
+void serialize(Archive& archive, Answer& m, PacketMemory& before) {
+  constexpr std::uint8_t kSlot = 4, kBlackColor = 8, kWhiteColor = 16, kColor = 24, kUnknown = 0xe0;
+  std::uint8_t differs = 0;
+  if constexpr (!Archive::kReading)
+    differs = static_cast<std::uint8_t>(static_cast<int>(formOf(m.record, before.answered + 1)) |
+                                        (m.slot == before.slot ? 0 : kSlot) |
+                                        (sameBits(m.color, before.color) ? 0
+                                         : sameBits(m.color, kBlack)     ? kBlackColor
+                                         : sameBits(m.color, kWhite)     ? kWhiteColor
+                                                                         : kColor));
+  archive(differs);
+  if constexpr (Archive::kReading) {
+    if (differs & kUnknown) return archive.fail();
+    m.slot = before.slot;
+  }
+  if (differs & kSlot) archive(m.slot);
+  serializeRecord(archive, m.record, before.answered + 1, static_cast<RecordForm>(differs & 3));
+  const int color = differs & kColor;
+  if (color == kColor) {
+    archive(m.color);
+  } else if constexpr (Archive::kReading) {
+    m.color = color == kBlackColor ? kBlack : color == kWhiteColor ? kWhite : before.color;
+  }
+  before.answered = m.record;
+  before.slot = m.slot;
+  before.color = m.color;
+}
+
+// Alone they are the first of a packet.
+template <class Archive, class M>
+requires(std::is_same_v<M, RayTask> || std::is_same_v<M, Answer>) void serialize(Archive& archive, M& m) {
+  PacketMemory nothing;
+  serialize(archive, m, nothing);
 }
 
 using RayMessages = TypeList<RayTask, ShadowTask, LightAnswers, Expect, PyramidWanted, PrimaryRays, Answer,

@@ -81,8 +81,8 @@ void TaskContext::noteDecoded(const LinkEvent& event, double begin, std::uint64_
                               std::uint64_t waiting) {
   const auto from = static_cast<std::int32_t>(event.task);
   const double now = link.now();
-  record_->add({nanoseconds(std::max(begin, observed_)), nanoseconds(now), EventKind::decode, 0, from, packetsFrom_[from]++,
-                static_cast<std::uint32_t>(messages), event.bytes.size()});
+  record_->add({nanoseconds(std::max(begin, observed_)), nanoseconds(now), EventKind::decode, 0, from,
+                packetsFrom_[from]++, static_cast<std::uint32_t>(messages), event.bytes.size()});
   noteQueue(now, waiting);
 }
 

@@ -48,6 +48,7 @@ std::string applySchedule(HostProgramOptions& o, std::uint32_t hosts, std::uint6
       host.wishes.voxels > 0 || o.pyramids || host.wishes.clusters > 1 || host.wishes.shades;
   // Tasks asked for by number get one thread each.
   host.threads = o.render.threads.value_or(o.schedule == "auto" && !tasksSaid ? 0 : 1);
+  policy.shadeLocally = !o.shading || *o.shading == "local";
   if (o.schedule == "auto" && tasksSaid) {
     policy.shadows = ShadowPolicy::automatic;
     why = "rays travel, for tasks were asked for by number";
@@ -73,9 +74,10 @@ std::string applySchedule(HostProgramOptions& o, std::uint32_t hosts, std::uint6
     policy.horizon = {Horizon::Kind::cells, 1e9};
     policy.shadows = ShadowPolicy::local;
     policy.secondariesTravel = false;
+  } else if (policy.shadeLocally) {
+    policy.shadows = ShadowPolicy::automatic;
   }
   host.split = o.split == "cost" ? Split::cost : o.split == "equal" ? Split::equal : Split::balanced;
-  policy.shadeLocally = !o.shading || *o.shading == "local";
   // Every cluster has somebody to work for.
   if (host.wishes.pyramids > 0) host.wishes.pyramids = std::max(host.wishes.pyramids, host.wishes.clusters);
   if (o.pyramids) host.wishes.pyramids = *o.pyramids;
@@ -119,7 +121,7 @@ void declareHostOptions(CLI::App& app, HostProgramOptions& o) {
       ->group(tasks);
   const std::string sharing = "What travels: rays or objects";
   app.add_option("--schedule", o.schedule,
-                 "auto: by the size of the scene and the machines; data: all rays travel; hybrid: primary "
+                 "auto: by the size of the scene and the machines; data: rays travel; hybrid: primary "
                  "and shadow rays are traced where they begin, with "
                  "fetched cells; "
                  "pipelined: more of that, farther; demand: every ray, nothing travels but objects")

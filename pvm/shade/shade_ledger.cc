@@ -41,7 +41,7 @@ ShadeLedger::Record* ShadeLedger::find(RecordId id) {
 
 ShadeLedger::Verdict ShadeLedger::expect(Expect&& message) {
   // Whoever has added the lights says no more of them.
-  if (message.hit.visibility.size() != (message.hit.lightsAdded ? 0 : lightPoints_) ||
+  if (message.hit.visibility.size() != lightPoints_ ||
       std::any_of(message.hit.visibility.begin(), message.hit.visibility.end(),
                   [](LightVisibility v) { return v > LightVisibility::traced; }))
     return Verdict::refused;

@@ -5,8 +5,9 @@
 
 namespace rayshade {
 
+// A row of a mesh that is not full has routers all the same.
 Network::Network(const NetworkSpec& spec, std::uint32_t hosts)
-    : spec_(spec), parts_(4 * hosts), inside_(hosts) {}
+    : spec_(spec), parts_(4 * ((hosts + spec.columns - 1) / spec.columns) * spec.columns), inside_(hosts) {}
 
 Nanoseconds Network::take(Part& part, Nanoseconds now, Nanoseconds span) {
   const Nanoseconds begin = std::max(now, part.free);
@@ -53,7 +54,6 @@ Network::Passed Network::pass(Journey& packet, Nanoseconds now) {
     case NetworkSpec::Kind::mesh:
       break;
   }
-  // A last row that is not full has no lines where there are no hosts; its packets go along the row above.
   const Nanoseconds begin = take(nextLine(packet), now, span);
   const bool arrived = packet.at == packet.to;
   return {begin + latency + (arrived ? span : 0), arrived};

@@ -11,7 +11,7 @@ void HitShader::traceLight(std::span<const RayHit> hits) {
 }
 
 ReplyTo HitShader::handOver(HitLight& at, const Ray& ray, const ReturnPath& back, const ReplyTo& to) {
-  expect_.to = replies_.externalReply(to);
+  expect_.to = to;
   expect_.hit = describe(ray, back, at.point, at.visibility);
   expect_.gathered.light = at.light;
   expect_.pending.clear();

@@ -5,16 +5,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "pvm/trace/replies.h"
+#include "pvm/trace/shade_sender.h"
 #include "pvm/trace/shadow_bundles.h"
 
 namespace rayshade {
 
 class HitShader {
  public:
-  HitShader(const EpochSettings& at, TaskSpace& space, Replies& replies, ShadeSender& shades,
-            ShadowBundles& shadows, TraceCounts& counts)
-      : at_(at), space_(space), replies_(replies), shades_(shades), shadows_(shadows), counts_(counts) {}
+  HitShader(const EpochSettings& at, TaskSpace& space, ShadeSender& shades, ShadowBundles& shadows,
+            TraceCounts& counts)
+      : at_(at), space_(space), shades_(shades), shadows_(shadows), counts_(counts) {}
 
   // Separate shading of at most kBundleSize hits; to[i]: where the colour of hits[i] goes.  queue(ray, reply) takes the
   // transmitted and reflected rays.
@@ -28,7 +28,6 @@ class HitShader {
 
   const EpochSettings& at_;
   TaskSpace& space_;
-  Replies& replies_;
   ShadeSender& shades_;
   ShadowBundles& shadows_;
   TraceCounts& counts_;

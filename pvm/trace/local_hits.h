@@ -1,9 +1,8 @@
 // Hits that are being shaded by the task that found them.
 //
-// Their lights have been added; what is awaited are the colours of the rays that go on from them, which are with the same
-// task.  As soon as one of these rays must leave, its hit goes over to a shade task, which collects what is still to come
-// (Reinhard & Jansen, section 3); so a shade task is asked where colours come from several places, and only there.
-// docs/decisions/0016-shading-where-it-is-found.md
+// Their lights have been added; what is awaited are the colours of the rays that go on from them, whether these stay with the task or
+// travel.  So a shade task is asked only where light comes from elsewhere (Reinhard & Jansen, section 3, and
+// docs/decisions/0016-shading-where-it-is-found.md).
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -19,12 +18,12 @@ struct LocalHit {
   ReturnPath back;
   ReplyTo to;                                   // where its own colour goes
   std::optional<Color> transmitted, reflected;  // once they have come
-  int rays = 0;                                 // of this task, that will bring a colour
-  ReplyTo there;                                // once it has gone over: where they send it
+  int missing = 0;                              // colours; 0: nobody waits here
 };
 
 class LocalHits {
  public:
+  // Requires that `back` waits for something.
   std::uint64_t add(Color sum, const ReturnPath& back, const ReplyTo& to) {
     if (free_.empty()) {
       free_.push_back(hits_.size());
@@ -32,15 +31,24 @@ class LocalHits {
     }
     const std::uint64_t number = free_.back();
     free_.pop_back();
-    hits_[number] = {sum, back, to, {}, {}, back.transmitted + back.reflected, {}};
+    hits_[number] = {sum, back, to, {}, {}, back.transmitted + back.reflected};
     return number;
   }
-  // Requires a number of add() that has rays left.
-  LocalHit& operator[](std::uint64_t number) { return hits_[number]; }
-  // One of its rays has come back or left; the last one ends the hit.
-  void forgetRay(std::uint64_t number) {
-    if (--hits_[number].rays == 0) free_.push_back(number);
+  // The colour of a ray that goes on from a hit.  Answers with the hit, which is complete when nothing is missing and then keeps its
+  // place until release(); null: nothing is awaited there.
+  const LocalHit* arrive(std::uint64_t number, Slot slot, Color color) {
+    if (number >= hits_.size() || (slot != kTransmittedSlot && slot != kReflectedSlot)) return nullptr;
+    LocalHit& hit = hits_[number];
+    const bool transmitted = slot == kTransmittedSlot;
+    std::optional<Color>& place = transmitted ? hit.transmitted : hit.reflected;
+    if (hit.missing == 0 || place || !(transmitted ? hit.back.transmitted : hit.back.reflected))
+      return nullptr;
+    place = color;
+    --hit.missing;
+    return &hit;
   }
+  // Requires a hit that is complete.
+  void release(std::uint64_t number) { free_.push_back(number); }
   std::size_t size() const { return hits_.size() - free_.size(); }
   void clear() {
     hits_.clear();

@@ -8,8 +8,8 @@ namespace {
 
 constexpr double kRemembered = 0.95;  // what one cell that leaves keeps of those before it
 
-// A look into a single cell takes as long as joining about so many bytes.
-constexpr double kBytesJoinedPerLook = 32;
+// A look into a single cell takes 0.15 us that joining would save, and joining 18 ns a byte.
+constexpr double kBytesJoinedPerLook = 8;
 // While cells are joined, so many times their bytes are needed: lists grow, trees are built in pieces.
 constexpr double kWhileJoining = 1.5;
 
@@ -35,6 +35,15 @@ RegionRef ObjectCache::find(CellId cell, std::size_t rays) {
   looks_ += rays;
   order_.splice(order_.begin(), order_, c.place);
   return {&c.model, &c.region};
+}
+
+std::optional<std::vector<Item>> ObjectCache::itemsOf(CellId cell) const {
+  const auto found = cells_.find(static_cast<std::uint32_t>(cell));
+  if (found == cells_.end()) return std::nullopt;
+  const SceneStore& store = found->second->model.store();
+  Extract extract(store);
+  for (const ObjectIndex object : store.objectsOf(kWorld)) extract.add(object);
+  return std::move(extract.items);
 }
 
 std::size_t ObjectCache::insert(CellId cell, std::vector<Item>&& items, const Exposure& exposure,
@@ -73,11 +82,12 @@ void ObjectCache::makeRoomFor(std::size_t bytes) {
   }
 }
 
-bool ObjectCache::join(double allBytes, const Exposure& exposure) {
+bool ObjectCache::join(double allBytes, const Exposure& exposure, const Model* own) {
   if (cells_.empty() || kBytesJoinedPerLook * static_cast<double>(looks_) < static_cast<double>(bytes_) ||
       kWhileJoining * std::max(allBytes, static_cast<double>(bytes_)) > static_cast<double>(mostBytes_))
     return false;
   looks_ = 0;
+  if (own != nullptr && !anyJoined()) moveIntoJoined(*own);
   joined_.region = {};
   for (auto it = cells_.begin(); it != cells_.end(); it = cells_.erase(it)) {
     moveIntoJoined(it->second->model);

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <list>
 #include <memory>
+#include <optional>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -33,12 +34,16 @@ class ObjectCache {
     return cells_.contains(static_cast<std::uint32_t>(cell)) || isJoined(cell);
   }
 
+  // The objects of a cell with all that they refer to, for another cache; nothing if it is not here, or joined.
+  std::optional<std::vector<Item>> itemsOf(CellId cell) const;
+
   // Takes a cell in, after room was made for it.  How many bytes it takes here.
   std::size_t insert(CellId cell, std::vector<Item>&& items, const Exposure& exposure, std::size_t wireBytes);
 
   // Joins what has come if rays have looked into single cells so often since the last time that it costs less than that, and if
-  // `allBytes`, what all cells that may come will take, have room while it is done.  False: nothing was done.
-  bool join(double allBytes, const Exposure& exposure);
+  // `allBytes`, what all cells that may come will take, have room while it is done.  False: nothing was done.  `own`: what the task
+  // holds anyway; with the first cells its objects are joined, too, so that there is one accelerator over all.  Null: nothing.
+  bool join(double allBytes, const Exposure& exposure, const Model* own = nullptr);
   bool isJoined(CellId cell) const { return joined_.cells.contains(static_cast<std::uint32_t>(cell)); }
   const Model& joinedModel() const { return joined_.model; }
   const Region& joinedRegion() const { return joined_.region; }

@@ -31,7 +31,6 @@ void PyramidTask::on(TaskId from, Configure message) {
   const auto finder = static_cast<std::uint32_t>(message.directory.voxelTasks.size()) + *place;
   unit_.begin(from, std::move(message), cluster, finder);
   context_.outbox.post(from, Ready{context_.epoch, arithmeticFingerprint(), 0, 0, 0});
-  unit_.wantTiles(from);
 }
 
 Report PyramidTask::counted() const {
@@ -91,6 +90,7 @@ void PyramidTask::on(TaskId, TileWork message) {
   cells.resize(beforeHorizon(cells, static_cast<std::size_t>(tile.width * tile.height)));
   std::erase_if(cells, [this](CellId cell) { return unit_.cells.isHere(cell); });
   unit_.tiles.add(message.number, TileSampler(rules, tile), cells);
+  unit_.noteWork();
   for (const CellId cell : cells) unit_.cells.want(cell);
   context_.notePeak(unit_.tiles.size() + unit_.shadows.waiting());
 }
@@ -105,11 +105,11 @@ void PyramidTask::on(TaskId from, PrimaryRays message) {
     rays_.add(primaryRay(unit_.at.request, unit_.at.exposure, message.samples[i]), 0,
               {from, message.firstRecord + i, 0});
   unit_.counts.primaryRays += message.samples.size();
-  context_.outbox.post(from, PyramidWanted{});
+  unit_.noteWork();
 }
 
 void PyramidTask::on(TaskId, const Answer& message) {
-  unit_.replies.answer({context_.link.self(), message.record, 0}, message.color);
+  unit_.replies.answer({context_.link.self(), message.record, message.slot}, message.color);
 }
 
 void PyramidTask::on(TaskId, CellItems message) {
@@ -151,6 +151,7 @@ bool PyramidTask::traceSome() {
                           });
   }
   unit_.sendTiles(host_);
+  unit_.wantTiles(host_);
   return any;
 }
 

@@ -17,23 +17,18 @@ void Replies::answer(ReplyTo to, Color color) {
       if (!tiles_.supply(to.record, color)) ++context_.outbox.traffic.refused;
       return;
     }
-    LocalHit& hit = localHits_[to.record];
     const std::uint64_t number = to.record;
-    if (hit.there.task != kNobody) {
-      to = {hit.there.task, hit.there.record, to.slot};
-      localHits_.forgetRay(number);
-      break;
-    }
-    (to.slot == kTransmittedSlot ? hit.transmitted : hit.reflected) = color;
-    if (hit.rays > 1) {
-      --hit.rays;
+    const LocalHit* const hit = localHits_.arrive(number, to.slot, color);
+    if (hit == nullptr) {
+      ++context_.outbox.traffic.refused;
       return;
     }
+    if (hit->missing > 0) return;
     ++combined_;
-    color = finish(hit.sum, hit.back, hit.transmitted.value_or(kBlack), hit.reflected.value_or(kBlack),
+    color = finish(hit->sum, hit->back, hit->transmitted.value_or(kBlack), hit->reflected.value_or(kBlack),
                    at_.settings);
-    to = hit.to;
-    localHits_.forgetRay(number);
+    to = hit->to;
+    localHits_.release(number);
   }
   if (to.task != host_) {
     context_.outbox.post(to.task, Answer{to.record, to.slot, color});
@@ -41,29 +36,6 @@ void Replies::answer(ReplyTo to, Color color) {
   }
   home_.push_back({to.record, color});
   if (home_.size() == kMostHome) flush();
-}
-
-ReplyTo Replies::externalReply(ReplyTo to) {
-  if (to.task != context_.link.self() || to.slot == 0) return to;
-  LocalHit& hit = localHits_[to.record];
-  if (hit.there.task == kNobody) hit.there = promote(hit);
-  const ReplyTo there{hit.there.task, hit.there.record, to.slot};
-  localHits_.forgetRay(to.record);
-  return there;
-}
-
-// With it go those that wait for it: their colours come from outside now.
-ReplyTo Replies::promote(LocalHit& hit) {
-  const ReplyTo to = externalReply(hit.to);
-  expect_.hit = afterLights(hit.sum, hit.back);
-  expect_.to = to;
-  expect_.gathered = {};
-  expect_.pending.clear();
-  const ReplyTo there = shades_.send(expect_, true);
-  if (hit.transmitted)
-    context_.outbox.post(there.task, Answer{there.record, kTransmittedSlot, *hit.transmitted});
-  if (hit.reflected) context_.outbox.post(there.task, Answer{there.record, kReflectedSlot, *hit.reflected});
-  return there;
 }
 
 // In runs of records that follow each other, as they do in a pyramid.

@@ -38,12 +38,15 @@ std::span<const RegionRef> TaskSpace::whole(std::size_t rays, RayKind kind) {
 }
 
 void TaskSpace::settle() {
-  if (!map_.fetches() || !cache_.join(kCacheBytesPerWireByte * cellBytesOfOthers_, at_.exposure)) return;
+  if (!map_.fetches()) return;
+  const Model* const own = share_ != nullptr ? &share_->model() : nullptr;
+  const double all = kCacheBytesPerWireByte * cellBytesOfOthers_ +
+                     (own != nullptr ? static_cast<double>(share_->bytes()) : 0);
+  if (!cache_.join(all, at_.exposure, own)) return;
   std::vector<bool> joined;
   for (const BlockMap::Block& block : map_.blocks()) joined.push_back(cache_.isJoined(block.cell));
   map_.join(joined);
-  whole_.resize(share_ != nullptr ? 1 : 0);
-  whole_.push_back({&cache_.joinedModel(), &cache_.joinedRegion()});
+  whole_ = {{&cache_.joinedModel(), &cache_.joinedRegion()}};
 }
 
 }  // namespace rayshade

@@ -35,7 +35,7 @@ class TaskSpace final : public LocalSpace {
   const VoxelShare* share_;
   ObjectCache& cache_;
   BlockMap map_;
-  std::vector<RegionRef> whole_;  // own voxels, then joined cells
+  std::vector<RegionRef> whole_;  // own voxels; once cells are joined, these and all of theirs
   CacheCounts shadowLookups_;
   double cellBytesOfOthers_ = 0;  // on the wire
 };

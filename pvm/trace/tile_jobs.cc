@@ -2,6 +2,11 @@
 #include "pvm/trace/tile_jobs.h"
 
 namespace rayshade {
+namespace {
+
+constexpr unsigned kAhead = 3;  // tiles for each thread
+
+}  // namespace
 
 void TileJobs::stop() {
   if (!active()) return;
@@ -12,11 +17,12 @@ void TileJobs::stop() {
   left_ = 0;
 }
 
-void TileJobs::begin(const SamplingRules& rules, unsigned threads) {
+void TileJobs::begin(TaskId host, const SamplingRules& rules, unsigned threads) {
   rules_ = rules;
   context_.useThreads(threads);
   for (unsigned i = 0; i < threads; ++i)
     tracers_.push_back(std::make_unique<SampleTracer>(space_, at_.settings, at_.request, at_.exposure.frame));
+  for (unsigned i = 0; i < kAhead * threads; ++i) context_.outbox.post(host, PyramidWanted{});
 }
 
 void TileJobs::add(Done&& job) {

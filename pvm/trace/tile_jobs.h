@@ -19,9 +19,9 @@ class TileJobs {
       : context_(context), at_(at), space_(space) {}
 
   // A new epoch: what was to be done is dropped.  `threads`: at least two, else there are no jobs.  To be called before `at` and
-  // the space change, and with the rules when they have.
+  // the space change, and with the rules when they have; then the host is asked for the first tiles.
   void stop();
-  void begin(const SamplingRules& rules, unsigned threads);
+  void begin(TaskId host, const SamplingRules& rules, unsigned threads);
   bool active() const { return !tracers_.empty(); }
 
   void add(const TileWork& message) { add({message.number, {message.tile, {}, {}, {}}}); }

@@ -14,6 +14,7 @@ void TraceUnit::begin(TaskId host, Configure&& message, std::uint32_t cluster, s
         std::move(message.cellBytes)};
   rules = samplingRules(at.request.picture, at.request.seed, static_cast<std::uint32_t>(at.exposure.frame));
   tiles.clear();
+  asked_ = 0;
   cells.begin();
   space.begin(message.cellBounds, context.link.self());
   shades.begin(finder);
@@ -21,9 +22,8 @@ void TraceUnit::begin(TaskId host, Configure&& message, std::uint32_t cluster, s
   shadows.begin();
 }
 
-void TraceUnit::wantTiles(TaskId host, unsigned threads) {
-  for (unsigned i = 0; i < std::max<unsigned>(kAhead, 3 * threads); ++i)
-    context.outbox.post(host, PyramidWanted{});
+void TraceUnit::wantTiles(TaskId host, std::size_t most) {
+  for (; tiles.size() + asked_ < most; ++asked_) context.outbox.post(host, PyramidWanted{});
 }
 
 void TraceUnit::sendTiles(TaskId host) {
@@ -31,7 +31,21 @@ void TraceUnit::sendTiles(TaskId host) {
     ++pyramids;
     pyramidRays += tile->colors.samples;
     context.outbox.post(host, TileDone{tile->number, std::move(tile->colors)});
-    context.outbox.post(host, PyramidWanted{});
+  }
+}
+
+void TraceUnit::giveOn(const CellWanted& message) {
+  if (static_cast<std::size_t>(message.cell) >= cellCount(at.tree) ||
+      !isTracer(at.directory, message.asker)) {
+    ++context.outbox.traffic.refused;
+    return;
+  }
+  std::optional<std::vector<Item>> items = cache.itemsOf(message.cell);
+  if (items) {
+    ++cellsServed;
+    context.outbox.post(message.asker, CellItems{message.cell, std::move(*items)});
+  } else {
+    context.outbox.post(at.ownerOf(voxelOfCell(at.tree, message.cell)), message);
   }
 }
 
@@ -45,6 +59,7 @@ void TraceUnit::addTo(Report& report) const {
   report.combined = replies.combined();
   report.cache = cache.counts();
   report.shadowCache = space.shadowLookups();
+  report.cellsServed = cellsServed;
   report.pyramids = pyramids;
   report.pyramidRays = pyramidRays;
 }

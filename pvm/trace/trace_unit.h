@@ -11,13 +11,14 @@
 #include "pvm/trace/hit_shader.h"
 #include "pvm/trace/image_copies.h"
 #include "pvm/trace/ray_bundle.h"
+#include "pvm/trace/replies.h"
 #include "rayshade/trace/tracer.h"
 
 namespace rayshade {
 
 struct TraceUnit {
-  // Tiles asked for at a time: some are traced while others wait for cells or colours.
-  static constexpr int kAhead = 4;
+  // Tiles in hand and asked for: some are traced while others wait for cells or colours.
+  static constexpr std::size_t kAhead = 4;
 
   // `share`: null for a task that holds no voxels.
   TraceUnit(TaskContext& context, const VoxelShare* share)
@@ -25,9 +26,9 @@ struct TraceUnit {
         cells(context, at, cache),
         space(at, share, cache),
         shades(context, at),
-        replies(context, at, shades, tiles),
+        replies(context, at, tiles),
         shadows(context, at, space, cells, counts),
-        shader(at, space, replies, shades, shadows, counts),
+        shader(at, space, shades, shadows, counts),
         tracer(space, at.settings, counts) {}
   TraceUnit(const TraceUnit&) = delete;
 
@@ -50,10 +51,16 @@ struct TraceUnit {
   // Traces the next samples of a tile, if any can be traced now.  False: none can.
   template <class Queue, class GoesOn>
   bool traceTile(Queue queue, GoesOn goesOn);
-  // Asks the host for the first tiles, enough for so many threads.
-  void wantTiles(TaskId host, unsigned threads = 1);
-  // Sends what has become of tiles to the host and asks for others.
+  // Asks the host for tiles until there are so many in hand or asked for.
+  void wantTiles(TaskId host, std::size_t most = kAhead);
+  // What was asked for has come: a tile, or samples in its place.
+  void noteWork() { asked_ -= asked_ > 0; }
+  // Sends what has become of tiles to the host.
   void sendTiles(TaskId host);
+
+  // Gives a cell of another task, which is in the cache, to whom that task says; if it is not here any more the question goes back.
+  // What its owner would not say is refused and counted.
+  void giveOn(const CellWanted& message);
 
   // What this unit has counted.
   void addTo(Report& report) const;
@@ -72,7 +79,7 @@ struct TraceUnit {
   ShadowBundles shadows;
   HitShader shader;
   Tracer tracer;
-  std::uint64_t pyramids = 0, pyramidRays = 0;
+  std::uint64_t pyramids = 0, pyramidRays = 0, cellsServed = 0;
 
  private:
   template <class GoesOn>
@@ -82,6 +89,7 @@ struct TraceUnit {
   void traceOnce(std::span<Ray> rays, std::span<const double> begin, std::span<const ReplyTo> to, Queue queue,
                  GoesOn goesOn);
 
+  std::size_t asked_ = 0;  // tiles
   // Room that is used again.
   FoundHits found_;
   OpenEnds open_;
@@ -89,7 +97,7 @@ struct TraceUnit {
   std::vector<Ray> primaries_;
 };
 
-// Open hits stay with this task, or go over to a shade task if light is still to come.
+// Open hits wait here, or at a shade task if light is still to come.
 template <class GoesOn>
 void TraceUnit::traceTrees(std::span<Ray> rays, std::span<const double> begin, std::span<const ReplyTo> to,
                            GoesOn goesOn) {

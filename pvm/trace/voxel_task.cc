@@ -38,30 +38,40 @@ void VoxelTask::on(TaskId from, Configure message) {
   dropWork();
   host_ = from;
   const std::uint32_t number = *place, perCluster = directory.tasksPerCluster();
-  takesTiles_ = inTiles(message) && directory.pyramidTasks.empty();
-  const unsigned threads = message.threads > 0 ? message.threads : context_.link.cores();
+  onlyTracer_ = directory.pyramidTasks.empty();
+  takesTiles_ = inTiles(message) && (onlyTracer_ || message.policy.secondariesTravel);
+  // Together the tasks of a machine have no more threads than it has cores, but each has one.
+  const unsigned share = std::max(1u, context_.link.cores() / tracersBeside(directory, number));
+  const unsigned threads = message.threads > 0 ? std::min(message.threads, share) : share;
   unit_.begin(from, std::move(message), number / perCluster, number);
+  holders_.begin(unit_.at.directory, context_.link.self());
   share_.prepare(unit_.at.exposure, unit_.at.tree, unit_.at.directory.voxels, number % perCluster);
   context_.outbox.post(from, Ready{context_.epoch, arithmeticFingerprint(), share_.objects(), share_.owned(),
                                    share_.leftOut()});
-  if (!takesTiles_) return;
-  if (threads > 1) jobs_.begin(*unit_.rules, threads);
-  unit_.wantTiles(from, threads);
+  if (takesTiles_ && threads > 1 && unit_.space.blocks().allHeld()) jobs_.begin(from, *unit_.rules, threads);
 }
 
 void VoxelTask::on(TaskId, Weights message) { unit_.setWeights(message); }
 
-// A cell for somebody else's cache.
+// A cell for somebody else's cache: from here, or from somebody who got it before.
 void VoxelTask::on(TaskId from, CellWanted message) {
-  std::optional<std::vector<Item>> items;
-  if (static_cast<std::size_t>(message.cell) < cellCount(unit_.at.tree))
-    items = share_.itemsOf(message.cell, unit_.at.tree);
-  if (!items) {
-    ++context_.outbox.traffic.refused;
-    return;
+  const bool known = static_cast<std::size_t>(message.cell) < cellCount(unit_.at.tree);
+  if (known && !share_.holds(message.cell, unit_.at.tree)) return unit_.giveOn(message);
+  const bool cameBack = message.asker != kNobody;
+  if (cameBack) {
+    holders_.forget(message.cell, from);
+  } else {
+    message.asker = from;
   }
-  ++cellsServed_;
-  context_.outbox.post(from, CellItems{message.cell, std::move(*items)});
+  const TaskId giver = known ? holders_.choose(message.cell, message.asker) : kNobody;
+  if (giver == kNobody) {
+    ++context_.outbox.traffic.refused;
+  } else if (giver != context_.link.self() && !cameBack) {
+    context_.outbox.post(giver, message);
+  } else {
+    ++unit_.cellsServed;
+    context_.outbox.post(message.asker, CellItems{message.cell, share_.itemsOf(message.cell, unit_.at.tree)});
+  }
 }
 
 void VoxelTask::on(TaskId, CellItems message) {
@@ -80,7 +90,6 @@ Report VoxelTask::counted() const {
   report.combined += jobs_.counts().hits;
   report.pyramids += jobs_.pyramids();
   report.pyramidRays += jobs_.pyramidRays();
-  report.cellsServed = cellsServed_;
   return report;
 }
 
@@ -98,7 +107,7 @@ void VoxelTask::on(TaskId from, Ping) {
   context_.outbox.flush();
 }
 
-void VoxelTask::on(TaskId from, PrimaryRays&& work) {
+void VoxelTask::on(TaskId, PrimaryRays&& work) {
   if (!samplesFit(work, unit_.at.request.picture)) {
     ++context_.outbox.traffic.refused;
     return;
@@ -108,8 +117,8 @@ void VoxelTask::on(TaskId from, PrimaryRays&& work) {
     return;
   }
   samples_.add(std::move(work));
+  unit_.noteWork();
   context_.notePeak(waiting());
-  if (takesTiles_) context_.outbox.post(from, PyramidWanted{});
 }
 
 void VoxelTask::on(TaskId, TileWork message) {
@@ -122,19 +131,15 @@ void VoxelTask::on(TaskId, TileWork message) {
     return;
   }
   unit_.tiles.add(message.number, TileSampler(*unit_.rules, message.tile));
+  unit_.noteWork();
   context_.notePeak(waiting());
 }
 
 void VoxelTask::on(TaskId, const Answer& message) {
-  unit_.replies.answer({context_.link.self(), message.record, 0}, message.color);
+  unit_.replies.answer({context_.link.self(), message.record, message.slot}, message.color);
 }
 
 void VoxelTask::on(TaskId, RayTask&& task) {
-  if (task.to.task == context_.link.self() &&
-      task.to.slot != 0) {  // colours of its hits come from shade tasks
-    ++context_.outbox.traffic.refused;
-    return;
-  }
   const double begin = walkedTo(unit_.at.tree, task.ray.origin, task.ray.direction, task.step);
   rays_.add(std::move(task.ray), begin, task.to);
   context_.notePeak(waiting());
@@ -173,6 +178,8 @@ bool VoxelTask::traceSome() {
         [this](Ray&& ray, const NextBlock& next, const ReplyTo& to) { goOn(std::move(ray), next, to); });
   }
   unit_.sendTiles(host_);
+  // Where there are pyramid tasks, who is busy with rays leaves tiles to those who are idle.
+  if (takesTiles_ && !jobs_.active() && (onlyTracer_ || !any)) unit_.wantTiles(host_);
   return any;
 }
 
@@ -200,7 +207,9 @@ void VoxelTask::queue(Ray&& ray, const ReplyTo& to) {
   context_.notePeak(waiting());
 }
 
+// It travels, now and then with a debt that has its cell fetched for those that come later.
 void VoxelTask::goOn(Ray&& ray, const NextBlock& next, const ReplyTo& to) {
+  if (takesTiles_ && unit_.space.blocks().fetches()) unit_.cells.missed(next.cell, 1, false);
   unit_.replies.forward(unit_.at.ownerOf(next.voxel), std::move(ray), next.step, to);
 }
 

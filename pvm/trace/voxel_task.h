@@ -7,6 +7,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "pvm/trace/cell_holders.h"
 #include "pvm/trace/ray_queue.h"
 #include "pvm/trace/tile_jobs.h"
 #include "pvm/trace/trace_unit.h"
@@ -39,7 +40,7 @@ class VoxelTask {
   void on(TaskId from, Finish);
   void on(TaskId from, Ping);
   void on(TaskId, const Observe& message) { context_.observe(message); }
-  void on(TaskId from, PrimaryRays&& work);
+  void on(TaskId, PrimaryRays&& work);
   void on(TaskId from, TileWork message);
   void on(TaskId from, const Answer& message);
   void on(TaskId from, RayTask&& task);
@@ -69,12 +70,12 @@ class VoxelTask {
   TraceUnit unit_;
   TileJobs jobs_;  // with several threads, if all that there is to be met is here
   TaskId host_ = kNobody;
-  bool takesTiles_ = false;
-  SampleQueue samples_;  // their rays are made when there is nothing deeper to do
+  bool takesTiles_ = false, onlyTracer_ = false;  // only voxel-trace tasks trace
+  SampleQueue samples_;                           // their rays are made when there is nothing deeper to do
   RayQueue rays_;
   ShadowQueue shadows_;
-  RayBundle bundle_;  // being traced
-  std::uint64_t cellsServed_ = 0;
+  RayBundle bundle_;     // being traced
+  CellHolders holders_;  // of cells of this task
 };
 
 }  // namespace rayshade

@@ -23,23 +23,6 @@ Color attenuated(Color sum, Vec3 origin, Vec3 direction, double distance, double
   return sum;
 }
 
-ReturnPath returnPath(const Ray& ray, double t, const OnwardRays& onward, const SceneSettings& settings) {
-  ReturnPath back;
-  back.extinct = ray.extinct;
-  back.inAir = ray.media.empty();
-  const bool throughAtmosphere = back.inAir && !settings.atmosphere.empty();
-  if (throughAtmosphere) {
-    back.origin = ray.origin;
-    back.direction = ray.direction;
-  }
-  if (throughAtmosphere || back.extinct != 1) back.distance = t;
-  back.transmitted = onward.transmitted.has_value();
-  back.reflected = onward.reflected.has_value();
-  back.transmitWeight = onward.transmitWeight;
-  back.reflectWeight = onward.reflectWeight;
-  return back;
-}
-
 Intersection describe(const Ray& ray, const ReturnPath& back, const SurfacePoint& at,
                       LightVisibilities visibility) {
   Intersection hit;
@@ -74,8 +57,6 @@ Color finish(Color sum, const ReturnPath& back, Color transmitted, Color reflect
 }
 
 Color combine(const Intersection& hit, const Gathered& gathered, const SceneSettings& settings) {
-  if (hit.lightsAdded)
-    return finish(*hit.lightsAdded, hit.back, gathered.transmitted, gathered.reflected, settings);
   const Facing facing{hit.normal, hit.geometricNormal, hit.smooth, mirrored(hit.direction, hit.normal)};
   Color sum = hit.surface.ambient * settings.ambient;
   forEachLightPoint(settings, [&](const LightPoint& point) {

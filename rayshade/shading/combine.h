@@ -27,8 +27,7 @@ struct ReturnPath {
 // All that combine() needs to know of a hit, and nothing else.
 struct Intersection {
   ReturnPath back;
-  std::optional<Color> lightsAdded;  // if they have been: their sum, and what follows does not count
-  Vec3 direction;                    // of the ray that hit
+  Vec3 direction;  // of the ray that hit
   RandomKey key{};
   std::int32_t sample = 0;
   Vec3 position, normal;
@@ -44,16 +43,26 @@ struct Gathered {
   Color transmitted, reflected;
 };
 
-ReturnPath returnPath(const Ray& ray, double t, const OnwardRays& onward, const SceneSettings& settings);
+inline ReturnPath returnPath(const Ray& ray, double t, const OnwardRays& onward,
+                             const SceneSettings& settings) {
+  ReturnPath back;
+  back.extinct = ray.extinct;
+  back.inAir = ray.media.empty();
+  const bool throughAtmosphere = back.inAir && !settings.atmosphere.empty();
+  if (throughAtmosphere) {
+    back.origin = ray.origin;
+    back.direction = ray.direction;
+  }
+  if (throughAtmosphere || back.extinct != 1) back.distance = t;
+  back.transmitted = onward.transmitted.has_value();
+  back.reflected = onward.reflected.has_value();
+  back.transmitWeight = onward.transmitWeight;
+  back.reflectWeight = onward.reflectWeight;
+  return back;
+}
+
 Intersection describe(const Ray& ray, const ReturnPath& back, const SurfacePoint& at,
                       LightVisibilities visibility);
-// The same once the lights have been added.
-inline Intersection afterLights(Color sum, const ReturnPath& back) {
-  Intersection hit;
-  hit.back = back;
-  hit.lightsAdded = sum;
-  return hit;
-}
 
 // What is left of a colour at the origin of the ray that brings it.
 Color attenuated(Color sum, Vec3 origin, Vec3 direction, double distance, double extinct, bool inAir,
@@ -76,13 +85,8 @@ void serialize(Archive& archive, ReturnPath& b) {
 }
 template <class Archive>
 void serialize(Archive& archive, Intersection& i) {
-  archive(i.back, i.lightsAdded);
-  if (i.lightsAdded) {
-    if constexpr (Archive::kReading) i = afterLights(*i.lightsAdded, i.back);
-    return;
-  }
   Surface& surface = i.surface;
-  archive(i.direction, i.key, i.position, i.normal, i.visibility);
+  archive(i.back, i.direction, i.key, i.position, i.normal, i.visibility);
   serializeSparse(archive, Usual{i.sample, 0}, Usual{i.geometricNormal, Vec3{}}, Usual{i.smooth, false});
   serializeSparse(archive, Usual{surface.ambient, kBlack}, Usual{surface.diffuse, kBlack},
                   Usual{surface.specular, kBlack}, Usual{surface.specularPower, 15.0},

@@ -27,7 +27,8 @@ ShadowRay shadowRay(const Ray& ray, const SurfacePoint& at, const LightSample& s
 bool passSurface(const Model& model, const Hit& hit, ShadowRay& shadow, const SceneSettings& settings) {
   const HitPath path = pathTo(model, shadow.ray, hit);
   if (boundSurface(model, path).transparency < kNegligible) return false;
-  const SurfacePoint at = evaluateSurface(model, hit, path, shadow.ray, settings);
+  SurfacePoint at;
+  evaluateSurface(model, hit, path, shadow.ray, settings, at);
   if (shadow.inside) shadow.through = shadow.through * std::pow(shadow.insideExtinct, hit.t - shadow.last);
   shadow.through = limited(shadow.through * (at.surface.transparency * at.surface.body));
   if (!anyAbove(shadow.through, kNegligible)) return false;

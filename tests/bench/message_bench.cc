@@ -6,6 +6,7 @@
 
 #include "pvm/messages/inbox.h"
 #include "pvm/shade/shade_task.h"
+#include "rayshade/sampling/sampler.h"
 #include "tests/support/null_link.h"
 
 namespace rayshade {
@@ -69,13 +70,23 @@ Expect expectation(RecordId record, std::size_t pending, bool reflected) {
   return e;
 }
 
+// Rays and answers have records that follow each other, as they have when a bundle leaves a task.
+template <class M>
+void postMany(Outbox& outbox, M message) {
+  for (std::size_t i = 0; i < kMessages; ++i) {
+    if constexpr (requires { message.to.record; }) ++message.to.record;
+    if constexpr (std::is_same_v<M, Answer>) ++message.record;
+    outbox.post(TaskId{2}, message);
+  }
+  outbox.flush();
+}
+
 template <class M>
 Bytes packetOf(const M& message) {
   KeepingLink link;
   Outbox outbox(link);
   outbox.beginEpoch(Epoch{1});
-  for (std::size_t i = 0; i < kMessages; ++i) outbox.post(TaskId{2}, message);
-  outbox.flush();
+  postMany(outbox, message);
   return link.sent.front();
 }
 
@@ -91,8 +102,7 @@ void write(benchmark::State& state, const M& message) {
   Outbox outbox(link);
   outbox.beginEpoch(Epoch{1});
   for (auto _ : state) {
-    for (std::size_t i = 0; i < kMessages; ++i) outbox.post(TaskId{2}, message);
-    outbox.flush();
+    postMany(outbox, message);
   }
   report(state, message, packetOf(message).size());
 }
@@ -116,6 +126,7 @@ void shade(benchmark::State& state, std::size_t pending, bool reflected) {
   for (int i = 0; i < 3; ++i)
     configure.settings.lights.push_back({PointLight{{4.0 + i, 3, 2}}, kWhite, true});
   configure.directory.voxelTasks = {TaskId{1}};
+  configure.directory.machines = {0};
   configure.directory.shadeTasks = {TaskId{2}};
   task.on(TaskId{1}, configure);
   std::uint64_t number = 0;
@@ -132,6 +143,75 @@ void shade(benchmark::State& state, std::size_t pending, bool reflected) {
     if (pending > 0 || reflected) number += kMessages;
   }
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(kMessages));
+}
+
+// Light that changes from pixel to pixel, with edges here and there.
+Color lightAt(const SampleId& id) {
+  const double v = (id.x / 50 + id.y / 70) % 2 * 0.5 + 1e-5 * id.x;
+  return {v, v / 2, v / 3};
+}
+
+// The host's part of a picture, for each sample: tiles go out, their colours come in, what is refined is decided, rows are taken.
+struct Host {
+  using Accepted = TypeList<TileDone>;
+  Epoch epoch() const { return Epoch{1}; }
+  void on(TaskId, const TileDone& message) { sampler.supply(tiles[message.number], message.colors); }
+  Sampler sampler;
+  std::vector<Tile> tiles;
+};
+
+void takePicture(benchmark::State& state, std::int32_t samplesPerSide) {
+  PictureSpec picture;
+  picture.width = picture.height = 512;
+  picture.samplesPerSide = samplesPerSide;
+  // What tasks would answer.
+  std::vector<Bytes> answers;
+  std::uint64_t samples = 0;
+  {
+    KeepingLink link;
+    Outbox outbox(link);
+    outbox.beginEpoch(Epoch{1});
+    Sampler sampler(picture, 1, 0);
+    std::vector<Color> row;
+    while (!sampler.finished()) {
+      while (const std::optional<Tile> tile = sampler.nextTile()) {
+        TileSampler traced(sampler.rules(), *tile);
+        SampleId ids[256];
+        while (const std::size_t count = traced.next(ids)) {
+          for (std::size_t i = 0; i < count; ++i) traced.supply(ids[i], lightAt(ids[i]));
+        }
+        outbox.post(TaskId{1}, TileDone{static_cast<std::uint32_t>(answers.size()), traced.colors()});
+        outbox.flush();
+        answers.push_back(std::move(link.sent.back()));
+        samples += traced.colors().samples;
+        sampler.supply(*tile, traced.colors());
+      }
+      SampleId missing;
+      while (sampler.nextSamples(std::span(&missing, 1)) > 0) sampler.supply(missing, lightAt(missing));
+      while (sampler.takeRow(row)) {
+      }
+    }
+  }
+  NullLink link;
+  Outbox outbox(link);
+  Traffic traffic;
+  std::vector<Color> row;
+  for (auto _ : state) {
+    Host host{Sampler(picture, 1, 0), {}};
+    while (!host.sampler.finished()) {
+      while (const std::optional<Tile> tile = host.sampler.nextTile()) {
+        const auto number = static_cast<std::uint32_t>(host.tiles.size());
+        outbox.post(TaskId{2}, TileWork{number, *tile});
+        host.tiles.push_back(*tile);
+        receivePacket(host, TaskId{2}, answers[number], traffic);
+      }
+      SampleId missing;
+      while (host.sampler.nextSamples(std::span(&missing, 1)) > 0)
+        host.sampler.supply(missing, lightAt(missing));
+      while (host.sampler.takeRow(row)) benchmark::DoNotOptimize(row.data());
+    }
+  }
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(samples));
 }
 
 template <class M>
@@ -155,6 +235,10 @@ int main(int argc, char** argv) {
   benchmark::RegisterBenchmark("shade, one light pending", [](benchmark::State& s) { shade(s, 1, false); });
   benchmark::RegisterBenchmark("shade, light and reflection pending",
                                [](benchmark::State& s) { shade(s, 1, true); });
+  benchmark::RegisterBenchmark("host, a picture of one sample a pixel",
+                               [](benchmark::State& s) { takePicture(s, 1); });
+  benchmark::RegisterBenchmark("host, a picture of up to nine",
+                               [](benchmark::State& s) { takePicture(s, 3); });
   benchmark::Initialize(&argc, argv);
   benchmark::RunSpecifiedBenchmarks();
 }

@@ -15,29 +15,42 @@ ReturnPath mirror() {
   return back;
 }
 
-TEST(LocalHits, APlaceIsUsedAgainWhenTheLastRayIsGone) {
+TEST(LocalHits, APlaceIsUsedAgainWhenTheHitIsComplete) {
   LocalHits hits;
   ReturnPath glass = mirror();
   glass.transmitted = true;
   const std::uint64_t first = hits.add(kWhite, glass, {TaskId{1}, 2, 3});
   const std::uint64_t second = hits.add(kWhite, mirror(), {TaskId{1}, first, kReflectedSlot});
   EXPECT_NE(first, second);
-  EXPECT_EQ(hits[first].rays, 2);
-  EXPECT_EQ(hits[second].rays, 1);
-  hits.forgetRay(first);
+  ASSERT_NE(hits.arrive(first, kReflectedSlot, kBlack), nullptr);
+  EXPECT_EQ(hits.arrive(first, kTransmittedSlot, kWhite)->missing, 0);
   EXPECT_EQ(hits.size(), 2u);
-  hits.forgetRay(first);
+  hits.release(first);
   EXPECT_EQ(hits.size(), 1u);
-  hits[second].reflected = kBlack;
   EXPECT_EQ(hits.add(kBlack, mirror(), {}), first);
-  EXPECT_EQ(hits[first].sum, kBlack);
-  EXPECT_FALSE(hits[first].reflected);
+  const LocalHit* const again = hits.arrive(first, kReflectedSlot, kWhite);
+  ASSERT_NE(again, nullptr);
+  EXPECT_EQ(again->sum, kBlack);
+  EXPECT_FALSE(again->transmitted);
   hits.clear();
   EXPECT_EQ(hits.size(), 0u);
 }
 
-// Mirrors between mirrors, and glass, cut in two: some hits stay, others go over to the shade task, and some of those when
-// one of their colours has come already.
+TEST(LocalHits, ColoursThatNobodyWaitsForAreRefused) {
+  LocalHits hits;
+  const std::uint64_t hit = hits.add(kWhite, mirror(), {TaskId{1}, 2, 3});
+  EXPECT_EQ(hits.arrive(hit + 1, kReflectedSlot, kWhite), nullptr);
+  EXPECT_EQ(hits.arrive(~std::uint64_t{0}, kReflectedSlot, kWhite), nullptr);
+  EXPECT_EQ(hits.arrive(hit, kTransmittedSlot, kWhite), nullptr);
+  EXPECT_EQ(hits.arrive(hit, 5, kWhite), nullptr);
+  EXPECT_NE(hits.arrive(hit, kReflectedSlot, kWhite), nullptr);
+  EXPECT_EQ(hits.arrive(hit, kReflectedSlot, kWhite), nullptr);
+  hits.release(hit);
+  EXPECT_EQ(hits.arrive(hit, kReflectedSlot, kWhite), nullptr);
+}
+
+// Mirrors between mirrors, and glass, cut in two: hits wait for rays of their own task and of others; those whose light comes from
+// elsewhere go over to the shade task.
 const std::string kHall =
     "screen 48 36 sample 1 nojitter eyep 0 -9 1 maxdepth 7 light 1 point 3 -9 9 light .4 directional -1 -1 1 "
     "surface mirror diffuse .2 .2 .2 specular 1 1 1 reflect .7 "

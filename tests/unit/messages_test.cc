@@ -59,6 +59,7 @@ TEST(Messages, DecodedAndEncodedAgainTheyHaveTheSameBytes) {
     ASSERT_EQ(version, kWireVersion);
     Bytes again;
     Writer{again}(version, epoch);
+    PacketMemory read, written;
     while (reader.left() > 0) {
       std::uint8_t tag = 0;
       reader(tag);
@@ -67,8 +68,10 @@ TEST(Messages, DecodedAndEncodedAgainTheyHaveTheSameBytes) {
         if (position++ != tag) return;
         seen.insert(tag);
         M message{};
-        reader(message);
-        Writer{again}(tag, message);
+        serializeInPacket(reader, message, read);
+        Writer writer(again);
+        writer(tag);
+        serializeInPacket(writer, message, written);
       });
       ASSERT_TRUE(reader.ok()) << "message " << static_cast<int>(tag);
     }
@@ -135,17 +138,91 @@ TEST(Messages, DamagedPacketsDoNoHarm) {
   feed<ShadeTask>(damaged);
 }
 
-// Only a task itself knows its locally shaded hits (local_hits.h): nobody may claim to bring a colour to one.
-TEST(Messages, ARayWithTheAddressOfItsReceiverIsRefused) {
-  NullLink link;
-  VoxelTask task(link);
+struct Receiver {
+  using Accepted = TypeList<RayTask, Answer>;
+  Epoch epoch() const { return Epoch{1}; }
+  void on(TaskId, RayTask message) { rays.push_back(std::move(message)); }
+  void on(TaskId, Answer message) { answers.push_back(message); }
+  std::vector<RayTask> rays;
+  std::vector<Answer> answers;
+};
+
+struct KeepingLink : NullLink {
+  void send(TaskId, std::span<const std::byte> packet) override {
+    receivePacket(receiver, TaskId{1}, packet, traffic);
+  }
+  Receiver receiver;
+  Traffic traffic;
+};
+
+TEST(Messages, RaysAndColoursSayHowTheyDifferFromTheOneBefore) {
+  KeepingLink link;
+  Outbox outbox(link);
+  outbox.beginEpoch(Epoch{1});
+  SeededRandom random(1);
+  std::vector<RayTask> rays;
+  std::vector<Answer> answers;
   RayTask ray;
-  ray.to = {link.self(), 12345, kReflectedSlot};
-  task.on(TaskId{1}, RayTask(ray));
-  EXPECT_EQ(task.waiting(), 0u);
-  ray.to.task = TaskId{7};
-  task.on(TaskId{1}, RayTask(ray));
-  EXPECT_EQ(task.waiting(), 1u);
+  Answer answer;
+  for (int i = 0; i < 5000; ++i) {
+    ++ray.to.record;
+    ++answer.record;
+    if (random.oneIn(3)) ray.to.record += std::uint64_t(random.integer(-70000, 70000));
+    if (random.oneIn(3)) answer.record -= std::uint64_t(random.integer(-40000, 40000));
+    if (random.oneIn(9))
+      answer.record = ray.to.record = ~std::uint64_t(random.integer(0, 3)) << random.integer(0, 60);
+    if (random.oneIn(4)) ray.to.task = TaskId{random.integer(1, 3)};
+    if (random.oneIn(4)) ray.to.slot = answer.slot = kReflectedSlot - Slot(random.integer(0, 1));
+    if (random.oneIn(4)) ray.ray.contribution.g = random.real(0, 1);
+    if (random.oneIn(6)) ray.ray.moment = {random.real(0, 1), random.integer(0, 2)};
+    if (random.oneIn(6)) ray.ray.depth = random.integer(0, 4), ray.ray.sample = random.integer(0, 70);
+    if (random.oneIn(6)) ray.ray.extinct = random.real(0, 1);
+    ray.ray.media = {};
+    if (random.oneIn(5)) ray.ray.media.push_back({1.5, 0.9});
+    ray.step = std::uint32_t(random.integer(0, 600));
+    ray.ray.origin = random.point(-1, 1);
+    answer.color =
+        std::array{kBlack, kWhite, answer.color, Color{-0.0, 1, random.real(0, 1)}}[random.below(4)];
+    outbox.post(TaskId{2}, ray);
+    outbox.post(TaskId{2}, answer);
+    rays.push_back(ray);
+    answers.push_back(answer);
+  }
+  outbox.flush();
+  EXPECT_EQ(link.traffic.refused, 0u);
+  ASSERT_EQ(link.receiver.rays.size(), rays.size());
+  ASSERT_EQ(link.receiver.answers.size(), answers.size());
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    ASSERT_EQ(encode(link.receiver.rays[i]), encode(rays[i])) << i;
+    ASSERT_EQ(encode(link.receiver.answers[i]), encode(answers[i])) << i;
+  }
+}
+
+TEST(Messages, ARayBehindOneOfItsKindTakes59Bytes) {
+  NullLink link;
+  Outbox outbox(link);
+  outbox.beginEpoch(Epoch{1});
+  RayTask ray;
+  ray.ray.contribution = {.3, .3, .3};
+  const auto post = [&](int rays) {
+    ray.to.record = 1;
+    for (int i = 0; i < rays; ++i, ++ray.to.record) outbox.post(TaskId{2}, ray);
+    outbox.flush();
+    return outbox.traffic.bytesOut;
+  };
+  const std::uint64_t one = post(1);
+  EXPECT_EQ(post(101), 2 * one + 100 * 59);
+}
+
+TEST(Messages, AColourThatNobodyWaitsForIsRefused) {
+  NullLink link;
+  TaskContext context(link);
+  const EpochSettings at;
+  TilesInHand tiles;
+  Replies replies(context, at, tiles);
+  for (const Slot slot : {Slot{0}, Slot{3}, kReflectedSlot, kTransmittedSlot})
+    replies.answer({link.self(), 12345, slot}, kWhite);
+  EXPECT_EQ(context.outbox.traffic.refused, 4u);
 }
 
 TEST(Messages, WorkBeforeTheFirstConfigureIsNotDone) {

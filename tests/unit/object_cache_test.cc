@@ -132,8 +132,8 @@ TEST(ObjectCache, JoinsWhatHasComeWithEachObjectOnce) {
   cache.begin(1 << 20);
   insert(cache, 0, 40);
   insert(cache, 7, 60);  // the 40, and more
-  cache.find(CellId{0}, 1000);
-  EXPECT_EQ(cache.find(CellId{7}, 1000).region->objects.size(), 60u);
+  cache.find(CellId{0}, 100'000);
+  EXPECT_EQ(cache.find(CellId{7}, 100'000).region->objects.size(), 60u);
   ASSERT_TRUE(cache.join(0, {}));
   EXPECT_EQ(held(cache), (Cells{0, 7}));
   EXPECT_TRUE(cache.isJoined(CellId{0}));
@@ -143,7 +143,7 @@ TEST(ObjectCache, JoinsWhatHasComeWithEachObjectOnce) {
   insert(cache, 7, 60);
   EXPECT_FALSE(cache.find(CellId{7}).region) << "it is here";
   insert(cache, 3, 80);
-  cache.find(CellId{3}, 1000);
+  cache.find(CellId{3}, 100'000);
   ASSERT_TRUE(cache.join(0, {}));
   EXPECT_EQ(cache.joinedRegion().objects.size(), 80u);
   EXPECT_EQ(held(cache), (Cells{0, 3, 7}));
