@@ -13,6 +13,7 @@
 #include "pvm/link/virtual_machine.h"
 #include "pvm/program/task_render.h"
 #include "pvm/schedule/plan.h"
+#include "rayshade/base/crew.h"
 #include "rayshade/base/memory.h"
 #include "rayshade/program/command_line.h"
 
@@ -65,6 +66,7 @@ class PvmStage final : public Stage {
       std::fprintf(stderr, "rayshade-host: warning: host %s did not join\n", host.c_str());
     return link_.emplace();
   }
+  unsigned cores() override { return coreCount(); }
   HostMemories memories(const std::string& ownName) override { return memoriesOf(lines(), ownName); }
   std::string console() override {
     lines();  // a wrong host file is found before anything is written

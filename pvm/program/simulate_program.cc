@@ -17,6 +17,7 @@ class SimulatedStage final : public Stage {
 
   std::vector<HostInfo> planned() override { return machine().hosts(); }
   Machine& start() override { return machine(); }
+  unsigned cores() override { return machine().cores(); }
   HostMemories memories(const std::string&) override {
     HostMemories all;
     for (const HostInfo& host : machine().hosts()) all[host.name].machine = spec_.memory;

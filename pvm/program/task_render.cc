@@ -54,7 +54,8 @@ int run(HostProgramOptions& options, Stage& stage, Need& need) {
   if (options.plan) {
     const std::vector<HostInfo> hosts = stage.planned();
     options.host.wishes.memory = stage.memories(hosts[0].name);
-    const std::string why = applySchedule(options, static_cast<std::uint32_t>(hosts.size()), survey.bytes);
+    const std::string why =
+        applySchedule(options, {static_cast<std::uint32_t>(hosts.size()), stage.cores()}, survey.bytes);
     if (!why.empty()) std::printf("schedule        auto: %s\n", why.c_str());
     std::fputs(describePlan(hosts, options.host, std::move(survey), {view, head.picture}, head.settings, work)
                    .c_str(),
@@ -81,7 +82,7 @@ int run(HostProgramOptions& options, Stage& stage, Need& need) {
   const std::vector<HostInfo> present = machine.hosts();
   const std::size_t hosts = present.size();
   options.host.wishes.memory = stage.memories(present[0].name);
-  applySchedule(options, static_cast<std::uint32_t>(hosts), survey.bytes);
+  applySchedule(options, {static_cast<std::uint32_t>(hosts), machine.cores()}, survey.bytes);
   options.host.wishes = neededTasks(work, options.host, hosts).wishes;
   HostTask host(
       machine, [&](SceneSink& sink) { parseScene(again, sink); }, std::move(survey), head.settings,

@@ -15,6 +15,7 @@ class Stage {
   virtual std::vector<HostInfo> planned() = 0;
   // Starts, or finds, the machine; it lives as long as this.
   virtual Machine& start() = 0;
+  virtual unsigned cores() = 0;  // of each host
   virtual HostMemories memories(const std::string& ownName) = 0;
   // The host task that runs there.
   virtual void hasHost(const HostTask&) {}

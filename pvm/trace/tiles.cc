@@ -7,7 +7,7 @@ namespace rayshade {
 namespace {
 
 // The record of a sample: tile, pixel and cell.
-constexpr int kCellBits = 6, kPixelBits = 16;
+constexpr int kCellBits = 12, kPixelBits = 16;
 static_assert(kMaxSamplesPerSide * kMaxSamplesPerSide <= 1 << kCellBits &&
               kMostTilePixels <= 1 << kPixelBits);
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pvm/trace/voxel_task.h"
 
+#include "rayshade/base/arithmetic.h"
+
 namespace rayshade {
 
 // Rays of samples that nobody needs any more may still be on their way: until the next Configure there is nothing here

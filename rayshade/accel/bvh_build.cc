@@ -40,7 +40,7 @@ struct Piece {
 class GrowingNodes {
  public:
   std::uint32_t add() {
-    if (size_ % kPart == 0) parts_.emplace_back();
+    if (size_ % kPart == 0) parts_.emplace_back().reserve(kPart);
     parts_.back().emplace_back();
     return size_++;
   }
@@ -61,7 +61,7 @@ class GrowingNodes {
   }
 
  private:
-  static constexpr std::uint32_t kPart = 4096;
+  static constexpr std::uint32_t kPart = 256;  // small: every job has one that is not full
   std::vector<std::vector<BvhNode>> parts_;
   std::uint32_t size_ = 0;
 };

@@ -114,6 +114,17 @@ template <class Query>
       end = far < end ? far : end;
     }
     const Long8 inside = ordinary & (start <= end);
+    const RaySet present = static_cast<RaySet>(((std::uint64_t{1} << count) - 1) << first);
+    forEachRay(~raysWhere(ordinary, group) & present, [&](std::size_t i) {
+      const Query& query = bundle[i];
+      BoxRay alone;
+      const Entry entry = enter(tree, query.ray.origin, query.ray.direction, query.tMin, query.tMax, alone);
+      // A ray that stands still is no ordinary one; to look at all is right for any.
+      if (entry != Entry::kMissed) entered.everything |= RaySet{1} << i;
+    });
+    const RaySet entering = raysWhere(inside, group) & present;
+    if (entering == 0) continue;  // most bundles that miss everything
+    entered.inside |= entering;
     start = start < -margins::kLargest  ? Double8{} - margins::kLargest
             : start > margins::kLargest ? Double8{} + margins::kLargest
                                         : start;
@@ -139,15 +150,6 @@ template <class Query>
     }
     rays.scale[group] = scale;
     rays.start[group] = start;
-    const RaySet present = static_cast<RaySet>(((std::uint64_t{1} << count) - 1) << first);
-    entered.inside |= raysWhere(inside, group) & present;
-    forEachRay(~raysWhere(ordinary, group) & present, [&](std::size_t i) {
-      const Query& query = bundle[i];
-      BoxRay alone;
-      const Entry entry = enter(tree, query.ray.origin, query.ray.direction, query.tMin, query.tMax, alone);
-      // A ray that stands still is no ordinary one; to look at all is right for any.
-      if (entry != Entry::kMissed) entered.everything |= RaySet{1} << i;
-    });
   }
   return entered;
 }

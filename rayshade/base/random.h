@@ -51,19 +51,26 @@ constexpr RandomKey child(RandomKey key, Branch branch, std::uint32_t index = 0)
 constexpr RandomKey frameKey(std::uint64_t seed, std::uint32_t frame) {
   return child(RandomKey{mixBits(std::rotl(seed, 32))}, frame);
 }
+constexpr RandomKey pixelKey(RandomKey frame, std::uint32_t x, std::uint32_t y) {
+  return child(frame, static_cast<std::uint64_t>(y) << 32 | x);
+}
 constexpr RandomKey sampleKey(RandomKey frame, std::uint32_t x, std::uint32_t y, std::uint32_t cell) {
-  return child(child(frame, static_cast<std::uint64_t>(y) << 32 | x), cell);
+  return child(pixelKey(frame, x, y), cell);
 }
 constexpr RandomKey sampleKey(std::uint64_t seed, std::uint32_t frame, std::uint32_t x, std::uint32_t y,
                               std::uint32_t cell) {
   return sampleKey(frameKey(seed, frame), x, y, cell);
 }
 
-// Uniform in [0, 1), a multiple of 2^-53.  `index` tells apart several numbers of one use.
-constexpr double uniform(RandomKey key, Dimension dimension, std::uint32_t index = 0) {
+// The key of one use of a key.  `index` tells apart several of the same kind.
+constexpr RandomKey useKey(RandomKey key, Dimension dimension, std::uint32_t index = 0) {
   const std::uint64_t use = static_cast<std::uint64_t>(dimension) << 32 | index;
-  const std::uint64_t bits = mixBits(static_cast<std::uint64_t>(key) + mixBits(~use));
-  return static_cast<double>(bits >> 11) * 0x1p-53;
+  return RandomKey{mixBits(static_cast<std::uint64_t>(key) + mixBits(~use))};
+}
+
+// Uniform in [0, 1), a multiple of 2^-53.
+constexpr double uniform(RandomKey key, Dimension dimension, std::uint32_t index = 0) {
+  return static_cast<double>(static_cast<std::uint64_t>(useKey(key, dimension, index)) >> 11) * 0x1p-53;
 }
 
 }  // namespace rayshade

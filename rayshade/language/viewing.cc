@@ -41,7 +41,7 @@ void readFilter(ArgumentReader& in, PixelFilter& filter) {
 }
 
 void readSample(ArgumentReader& in, SceneHead& head) {
-  head.picture.samplesPerSide = head.settings.samplesPerSide = in.integer({1, kMaxSamplesPerSide});
+  head.picture.samplesPerSide = in.integer({1, kMaxSamplesPerSide});
   if (in.accept("jitter")) head.picture.jitter = true;
   if (in.accept("nojitter")) head.picture.jitter = false;
 }
@@ -208,8 +208,8 @@ void checkHead(const SceneHead& head, const std::string& fileName) {
     errors += (errors.empty() ? "" : "\n") + describe(place) + ": error: " + message;
   };
   demand(picture.samplesPerSide >= 1 && picture.samplesPerSide <= kMaxSamplesPerSide, {"sample"},
-         "a sample count of " + std::to_string(picture.samplesPerSide) +
-             ": there are 1 to 8 samples along each side of a pixel");
+         "a sample count of " + std::to_string(picture.samplesPerSide) + ": there are 1 to " +
+             std::to_string(kMaxSamplesPerSide) + " samples along each side of a pixel");
   const std::string size = std::to_string(picture.width) + " x " + std::to_string(picture.height);
   auto sensible = [](std::int32_t side) { return side >= 1 && side <= kMaxPictureSide; };
   const bool screenGood = sensible(picture.width) && sensible(picture.height);

@@ -27,6 +27,10 @@ struct LightSource {
 inline int pointsOf(const LightSource& light) {
   return std::visit([](const auto& kind) { return kind.points(); }, light.kind);
 }
+// Are its points random?
+inline bool isRandom(const LightSource& light) {
+  return std::holds_alternative<AreaLight>(light.kind) || std::holds_alternative<ExtendedLight>(light.kind);
+}
 inline LightSample sampleLight(const LightSource& light, const LightQuery& query, int index) {
   return std::visit([&](const auto& kind) { return kind.sample(query, index); }, light.kind);
 }

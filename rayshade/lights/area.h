@@ -35,8 +35,9 @@ struct AreaLight {
 
   LightSample sample(const LightQuery& query, int index) const {
     const auto number = static_cast<std::uint32_t>(index);
-    const double u = (index % countU + uniform(query.key, Dimension::lightU, number)) / countU;
-    const double v = (index / countU + uniform(query.key, Dimension::lightV, number)) / countV;
+    const SquarePoint inCell = query.plan.anywhere(query.sample, query.key, query.plan.uses.light,
+                                                   Dimension::lightU, Dimension::lightV, number);
+    const double u = (index % countU + inCell.x) / countU, v = (index / countU + inCell.y) / countV;
     const Vec3 way = corner + u * edgeU + v * edgeV - query.position;
     const Vec3 toward = normalize(way);
     return {toward, toward, length(way), 1.0 / (countU * countV)};

@@ -2,9 +2,8 @@
 //
 //   extended radius  x y z                                                                   [world units]
 //
-// Shading uses the centre; the shadow ray goes to a point of the square [-r, r]^2 across the line of sight,
-// in the stratum of the ray's sample number: along the first axis the stratum's row, along the second its
-// column.
+// Shading uses the centre; the shadow ray goes to a point of the square [-r, r]^2 across the line of sight.  As strata are, it
+// is along the first axis in the row of the ray's sample, along the second in its column.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -29,11 +28,9 @@ struct ExtendedLight {
     const Vec3 way = centre - query.position;
     const Vec3 toward = normalize(way);
     const auto [a, b] = basisAround(toward);
-    auto stratum = [&](int cell, Dimension use) {
-      return radius * (2 * (cell + uniform(query.key, use)) / query.side - 1);
-    };
-    const double x = stratum(query.sample / query.side, Dimension::lightU);
-    const double y = stratum(query.sample % query.side, Dimension::lightV);
+    const SquarePoint at = query.plan.inStratum(query.sample, query.key, query.plan.uses.light,
+                                                Dimension::lightV, Dimension::lightU);
+    const double x = radius * (2 * at.y - 1), y = radius * (2 * at.x - 1);
     const Vec3 jittered = way + x * a + y * b;
     return {toward, normalize(jittered), length(jittered), 1};
   }

@@ -21,6 +21,7 @@
 #include "rayshade/base/bounds.h"
 #include "rayshade/base/random.h"
 #include "rayshade/base/vec.h"
+#include "rayshade/sampling/sample_plan.h"
 #include "rayshade/shapes/arguments.h"
 
 namespace rayshade {
@@ -37,8 +38,8 @@ struct LightSample {
 struct LightQuery {
   Vec3 position;    // world
   RandomKey key{};  // of this light at this hit
-  int sample = 0;   // stratum: column sample % side, row sample / side
-  int side = 1;     // samples per pixel along each side
+  int sample = 0;   // number of the ray's sample
+  SamplePlan plan{};
 };
 
 template <class L>

@@ -21,7 +21,8 @@ struct Medium {
 using MediumStack = InlineVector<Medium, 2>;  // innermost last; empty: the atmosphere
 
 struct Ray {
-  Ray() {}  // written out, so that a new element of a list is not cleared before: that takes as long as the rest
+  Ray() {
+  }  // written out, so that a new element of a list is not cleared before: that takes as long as the rest
 
   Vec3 origin, direction;       // |direction| = 1                                              [world units]
   Moment moment;                // for moving objects                                           [scene time]

@@ -62,17 +62,17 @@ void declareOptions(CLI::App& app, Options& o) {
       ->group(picture);
   app.add_option("-X", o.crop, "crop to left right bottom top, shares of the window")
       ->expected(4)
-      ->check(numberFrom(0, 1))
+      ->transform(numberFrom(0, 1))
       ->allow_extra_args(false)
       ->group(picture);
   app.add_option("-G", o.gamma, "gamma of the output (1: linear)")
-      ->check(numberFrom(0.01, 100))
+      ->transform(numberFrom(0.01, 100))
       ->group(picture);
   app.add_flag("--16", o.sixteenBit, "PNG with 16 bits a channel")->group(picture);
   app.add_flag("-l", o.leftEye, "render the left eye of a stereo pair")->group(picture);
   app.add_flag("-r", o.rightEye, "render the right eye")->group(picture);
   app.add_option("-E", o.eyeSeparation, "distance between the eyes")
-      ->check(numberFrom(0, kHuge))
+      ->transform(numberFrom(0, kHuge))
       ->group(picture);
   app.add_option("-A", o.firstFrame, "first frame of the animation")
       ->check(wholeNumberFrom(0, kMostFrames))
@@ -85,14 +85,25 @@ void declareOptions(CLI::App& app, Options& o) {
   app.add_option("-S", o.samples, "samples along each side of a pixel")
       ->check(wholeNumberFrom(1, kMaxSamplesPerSide))
       ->group(quality);
-  app.add_option("-T", o.contrast, "contrast r g b above which a pixel gets all of its samples")
+  app.add_option(
+         "--sampling", o.sampling,
+         "how samples are spread: nets (evenly in all that is random at once), strata (as rayshade 4 does)")
+      ->check(CLI::IsMember({"nets", "strata"}))
+      ->group(quality);
+  app.add_option(
+         "--refine", o.refinement,
+         "which pixels get all of their samples: neighbours (where these differ), crosses (as rayshade 4 "
+         "has it; loses light of small things), all")
+      ->check(CLI::IsMember({"neighbours", "crosses", "all"}))
+      ->group(quality);
+  app.add_option("-T", o.contrast, "contrast r g b above which pixels are refined; 0 0 0: all of them")
       ->expected(3)
-      ->check(numberFrom(0, kHuge))
+      ->transform(numberFrom(0, kHuge))
       ->allow_extra_args(false)
       ->group(quality);
   app.add_option("-C", o.cutoff, "weight r g b below which no ray is sent")
       ->expected(3)
-      ->check(numberFrom(0, kHuge))
+      ->transform(numberFrom(0, kHuge))
       ->allow_extra_args(false)
       ->group(quality);
   app.add_option("-D", o.maxDepth, "largest number of reflections and refractions in a row")
@@ -142,6 +153,10 @@ void applyOptions(const Options& o, SceneHead& head) {
   if (o.cutoff.size() == 3) settings.limits.cutoff = {o.cutoff[0], o.cutoff[1], o.cutoff[2]};
   if (o.contrast.size() == 3) picture.contrast = {o.contrast[0], o.contrast[1], o.contrast[2]};
   if (o.samples) picture.samplesPerSide = *o.samples;
+  picture.sampling = o.sampling == "strata" ? Sampling::strata : Sampling::nets;
+  if (o.refinement == "neighbours") picture.refinement = Refinement::neighbours;
+  if (o.refinement == "crosses") picture.refinement = Refinement::crosses;
+  if (o.refinement == "all") picture.refinement = Refinement::all;
   if (o.maxDepth) settings.limits.maxDepth = *o.maxDepth;
   if (o.frames) picture.frames = *o.frames;
   if (o.firstFrame) picture.firstFrame = *o.firstFrame;
@@ -161,7 +176,7 @@ void applyOptions(const Options& o, SceneHead& head) {
     picture.jitter = true;
   }
   checkHead(head, sceneName(o));
-  settings.samplesPerSide = picture.samplesPerSide;
+  agreeOnSamples(head);
 }
 
 std::string sceneName(const Options& options) {

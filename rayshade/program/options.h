@@ -27,6 +27,7 @@ struct Options {
   std::vector<double> crop, cutoff, contrast;
   std::optional<int> samples, maxDepth, frames, firstFrame, reportEvery;
   std::optional<double> gamma, eyeSeparation;
+  std::string sampling = "nets", refinement;
   bool gaussian = false, toggleJitter = false, noShadows = false, opaqueShadows = false, preview = false;
   bool leftEye = false, rightEye = false, toggleShadowCache = false;
   bool sixteenBit = false;

@@ -4,23 +4,25 @@
 #include <sstream>
 #include <vector>
 
+#include "rayshade/sampling/pixel_rows.h"
+
 namespace rayshade {
 namespace {
 
 // Samples as Sampler takes them: see sampling/sampler.h.
 void planSamples(ScenePlan& plan, const PictureSpec& picture) {
-  const auto width = static_cast<std::uint64_t>(plan.area.width);
-  const auto height = static_cast<std::uint64_t>(plan.area.height);
-  const auto all =
-      static_cast<std::uint64_t>(picture.samplesPerSide) * static_cast<std::uint64_t>(picture.samplesPerSide);
-  const bool adaptive = picture.samplesPerSide > 1 && width > 2 && height > 2;
-  plan.samplesAtMost = static_cast<std::int32_t>(all);
-  plan.samplesAtLeast = adaptive ? 1 : plan.samplesAtMost;
+  const SamplingRules rules = samplingRules(picture, 0, 0);
+  const auto width = static_cast<std::uint64_t>(rules.area.width);
+  const auto height = static_cast<std::uint64_t>(rules.area.height);
+  const auto all = static_cast<std::uint64_t>(rules.cells());
+  plan.samplesAtMost = rules.cells();
+  plan.samplesAtLeast = rules.refining() ? 1 : plan.samplesAtMost;
   plan.eyeRaysAtLeast = plan.eyeRaysAtMost = width * height * all;
-  if (!adaptive) return;
-  const std::uint64_t inner = (width - 2) * (height - 2);
-  const std::uint64_t below = width - 2;  // the line below the picture
-  plan.eyeRaysAtLeast = (width * height - inner) * all + inner + below;
+  if (!rules.refining()) return;
+  const std::uint64_t border = pixelsAskedForAll(rules);
+  const std::uint64_t below =
+      rules.rowCount > rules.area.height ? width - 2 : 0;  // the line below the picture
+  plan.eyeRaysAtLeast = border * all + width * height - border + below;
   plan.eyeRaysAtMost += below;
 }
 

@@ -10,12 +10,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cmath>
 #include <vector>
 
+#include "rayshade/base/elementary.h"
 #include "rayshade/sampling/picture_spec.h"
 
 namespace rayshade {
+
+// That of a column of cells, or of a row, up to a factor.
+inline double columnWeight(const PixelFilter& filter, std::int32_t side, std::int32_t column) {
+  const double u = -filter.width / 2 + (column + 0.5) * filter.width / side;
+  return filter.gaussian ? std::exp(-u * u / 2) : 1.0;
+}
 
 inline std::vector<double> filterWeights(const PixelFilter& filter, std::int32_t side) {
   const double cell = filter.width / side;
@@ -24,7 +30,7 @@ inline std::vector<double> filterWeights(const PixelFilter& filter, std::int32_t
   for (std::int32_t b = 0; b < side; ++b) {
     for (std::int32_t a = 0; a < side; ++a) {
       const double u = -filter.width / 2 + (a + 0.5) * cell, v = -filter.width / 2 + (b + 0.5) * cell;
-      const double weight = filter.gaussian ? std::exp(-(u * u + v * v) / 2) : 1.0;
+      const double weight = filter.gaussian ? elementary::exp(-(u * u + v * v) / 2) : 1.0;
       weights.push_back(weight);
       total += weight;
     }

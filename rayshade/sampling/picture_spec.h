@@ -12,13 +12,20 @@
 #include <optional>
 
 #include "rayshade/base/color.h"
+#include "rayshade/sampling/sample_plan.h"
 
 namespace rayshade {
 
-inline constexpr std::int32_t kMaxSamplesPerSide = 8;
 inline constexpr std::int32_t kMaxPictureSide =
     65536;  // pixels: rows are held in memory, whatever a file says
 inline constexpr std::int32_t kMostFrames = 1'000'000;  // each is a file
+
+// Which pixels get all of their samples (cross_sweep.h); the others get one.
+enum class Refinement : std::uint8_t {
+  neighbours,  // those whose neighbours differ from each other: without bias
+  crosses,  // those that differ from their neighbours, as rayshade has it: loses what is smaller than a pixel
+  all,      // all of them
+};
 
 struct PixelFilter {
   bool gaussian = false;
@@ -30,13 +37,18 @@ struct PictureSpec {
   std::int32_t width = 512, height = 512;             // of the whole screen                  [pixels]
   std::optional<std::array<std::int32_t, 4>> window;  // x0 x1 y0 y1, inclusive; y from the top
   std::array<double, 4> crop{0, 1, 0, 1};             // left right bottom top, shares of the window
-  std::int32_t samplesPerSide = 3;                    // side^2 samples in a pixel, 1..8
+  std::int32_t samplesPerSide = 3;                    // side^2 samples in a pixel, 1..64
+  Sampling sampling = Sampling::nets;
+  SampleUses uses{};
+  Refinement refinement = Refinement::crosses;
   bool jitter = true;
   PixelFilter filter;
-  Color contrast{0.2, 0.15, 0.3};  // adaptive supersampling
+  Color contrast{0.2, 0.15, 0.3};  // above it neighbours differ; black: all pixels get all samples
   double gamma = 1;
   std::int32_t frames = 1, firstFrame = 0;
   double frameLength = 1, startTime = 0, shutter = 0;  // scene time
+
+  SamplePlan plan() const { return {samplesPerSide, sampling, uses}; }
 };
 
 // The pixels of the screen that are rendered; x to the right, y down.
@@ -74,8 +86,8 @@ void serialize(Archive& archive, PixelFilter& f) {
 // What samples and their rays depend on.
 template <class Archive>
 void serialize(Archive& archive, PictureSpec& p) {
-  archive(p.width, p.height, p.window, p.crop, p.samplesPerSide, p.jitter, p.filter, p.contrast, p.firstFrame,
-          p.frameLength, p.startTime, p.shutter);
+  archive(p.width, p.height, p.window, p.crop, p.samplesPerSide, p.sampling, p.uses, p.refinement, p.jitter,
+          p.filter, p.contrast, p.firstFrame, p.frameLength, p.startTime, p.shutter);
   if constexpr (Archive::kReading) {
     if (p.samplesPerSide < 1 || p.samplesPerSide > kMaxSamplesPerSide) {
       p.samplesPerSide = 1;

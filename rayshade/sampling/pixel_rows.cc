@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rayshade/sampling/pixel_rows.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "rayshade/sampling/filter.h"
@@ -26,29 +27,75 @@ Color filtered(const std::vector<double>& weights, std::size_t firstCell, Color 
 
 }  // namespace
 
-SamplingRules samplingRules(const PictureSpec& spec, std::uint64_t seed, std::uint32_t frame) {
-  const auto area = pixelArea(spec);
-  if (!area)
-    throw std::invalid_argument("the window is not on the screen, or the screen is empty or too large");
-  const std::int32_t side = spec.samplesPerSide;
-  if (side < 1 || side > kMaxSamplesPerSide)
-    throw std::invalid_argument("there must be 1 to 8 samples per side of a pixel");
-  const bool refining = side > 1 && area->width > 2 && area->height > 2;
-  return {*area,         side,
-          seed,          frame,
-          spec.contrast, filterWeights(spec.filter, side),
-          refining,      area->height + (refining ? 1 : 0)};
+namespace {
+
+Refinement refinementOf(const PictureSpec& spec) {
+  if (spec.samplesPerSide == 1 || spec.contrast == kBlack) return Refinement::all;
+  const bool tiny = spec.width <= 2 || spec.height <= 2;  // no cross has its middle there
+  return tiny && spec.refinement == Refinement::crosses ? Refinement::all : spec.refinement;
 }
 
-// Row 0, the last row and the first and last column get all of their samples; the line below the picture (sampler.cc) one
-// for each pixel, and none at its two ends.
+// What decides about the pixels that are wanted: one more on each side.
+// differs from rayshade4: the border of a window is none of the picture; and without contrast all pixels get all samples.  Crosses depend on all that were swept before them: on
+// all lines above, and as the line below is swept, on two more.
+PixelArea sampledArea(const PixelArea& wanted, const PictureSpec& spec, Refinement refinement) {
+  const std::int32_t right = wanted.x + wanted.width, bottom = wanted.y + wanted.height;
+  switch (refinement) {
+    case Refinement::crosses:
+      return {0, 0, spec.width, std::min(bottom + 2, spec.height)};
+    case Refinement::neighbours: {
+      const std::int32_t x = std::max(wanted.x - 1, 0), y = std::max(wanted.y - 1, 0);
+      return {x, y, std::min(right + 1, spec.width) - x, std::min(bottom + 1, spec.height) - y};
+    }
+    case Refinement::all:
+      break;
+  }
+  return wanted;
+}
+
+}  // namespace
+
+SamplingRules samplingRules(const PictureSpec& spec, std::uint64_t seed, std::uint32_t frame) {
+  const auto wanted = pixelArea(spec);
+  if (!wanted)
+    throw std::invalid_argument("the window is not on the screen, or the screen is empty or too large");
+  SamplingRules rules;
+  rules.side = spec.samplesPerSide;
+  if (rules.side < 1 || rules.side > kMaxSamplesPerSide)
+    throw std::invalid_argument("too many samples per side of a pixel, or none");
+  rules.refinement = refinementOf(spec);
+  rules.area = sampledArea(*wanted, spec, rules.refinement);
+  rules.wanted = {wanted->x - rules.area.x, wanted->y - rules.area.y, wanted->width, wanted->height};
+  rules.screen = {-rules.area.x, -rules.area.y, spec.width, spec.height};
+  rules.seed = seed;
+  rules.frame = frame;
+  rules.contrast = spec.contrast;
+  // Samples that are dense where the filter weighs much weigh the same (sample_position.cc).
+  const bool equal = spec.sampling == Sampling::nets && spec.jitter;
+  rules.weights = filterWeights(equal ? PixelFilter{} : spec.filter, rules.side);
+  const bool toTheBottom = wanted->y + wanted->height + 2 > spec.height;
+  rules.rowCount = rules.area.height + (rules.refinement == Refinement::crosses && toTheBottom ? 1 : 0);
+  return rules;
+}
+
+// Crosses: row 0, the last row and the first and last column of the screen get all of their samples; the line below the picture
+// (sampler.cc) one for each pixel, and none at its two ends.
 Asked askedOf(const SamplingRules& rules, Place place) {
-  const PixelArea& area = rules.area;
-  const bool side = place.x == 0 || place.x == area.width - 1;
-  if (place.y == area.height) return side ? Asked::nothing : Asked::first;
-  if (rules.side == 1) return Asked::first;
-  const bool end = place.y == 0 || place.y == area.height - 1;
-  return side || end || !rules.refining ? Asked::all : Asked::first;
+  if (rules.side == 1 || rules.refinement == Refinement::neighbours) return Asked::first;
+  if (!rules.refining()) return Asked::all;
+  const PixelArea& screen = rules.screen;  // the area begins where it does
+  const bool side = place.x == 0 || place.x == screen.width - 1;
+  if (place.y == screen.height) return side ? Asked::nothing : Asked::first;
+  return side || place.y == 0 || place.y == screen.height - 1 ? Asked::all : Asked::first;
+}
+
+std::uint64_t pixelsAskedForAll(const SamplingRules& rules) {
+  const auto width = static_cast<std::uint64_t>(rules.area.width),
+             height = static_cast<std::uint64_t>(rules.area.height);
+  if (rules.refinement == Refinement::neighbours) return 0;
+  if (!rules.refining()) return width * height;
+  const std::uint64_t lines = rules.area.height == rules.screen.height ? 2 : 1;
+  return lines * width + 2 * (height - lines);
 }
 
 std::int32_t firstCell(const SamplingRules& rules, Place place) {
@@ -121,7 +168,6 @@ bool PixelRows::supply(const SampleId& id, Color color) {
     return false;
   const Place place{static_cast<std::int32_t>(y), static_cast<std::int32_t>(x)};
   const std::int32_t first = firstCell(rules_, place);
-  const std::uint64_t bit = std::uint64_t{1} << id.cell;
   if (isWhole(place)) return false;
   if (id.cell == first) {
     if (has(place, kFirst)) return false;
@@ -130,12 +176,15 @@ bool PixelRows::supply(const SampleId& id, Color color) {
   }
   Cells& cells = come_[keyOf(place)];
   cells.colors.resize(rules_.weights.size());
+  cells.come.resize(rules_.weights.size());
   if (id.cell != first) {
-    if ((cells.come & bit) != 0) return false;
-    cells.come |= bit;
-    cells.colors[static_cast<std::size_t>(id.cell)] = finite(color);
+    const auto cell = static_cast<std::size_t>(id.cell);
+    if (cells.come[cell]) return false;
+    cells.come[cell] = true;
+    ++cells.count;
+    cells.colors[cell] = finite(color);
   }
-  if (!has(place, kFirst) || std::popcount(cells.come) + 1 < rules_.cells()) return true;
+  if (!has(place, kFirst) || cells.count + 1 < rules_.cells()) return true;
   supplyWhole(place, filtered(rules_.weights, static_cast<std::size_t>(first),
                               row(place.y).first[column(place)], cells.colors));
   come_.erase(keyOf(place));

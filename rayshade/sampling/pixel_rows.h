@@ -5,7 +5,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <bit>
 #include <compare>
 #include <deque>
 #include <span>
@@ -25,18 +24,21 @@ struct SamplerCounts {
 
 // What does not change while a picture is sampled.
 struct SamplingRules {
-  PixelArea area;
+  PixelArea area;    // what is sampled of the screen: what is wanted, and what decides about it
+  PixelArea wanted;  // from the upper left of the area, as the next
+  PixelArea screen;
   std::int32_t side = 1;  // of a pixel, in samples
   std::uint64_t seed = 0;
   std::uint32_t frame = 0;
   Color contrast;
   std::vector<double> weights;  // by cell
-  bool refining = false;        // there are pixels with a single sample
-  std::int32_t rowCount = 0;    // with the line below the picture, if it is traced
+  Refinement refinement = Refinement::all;
+  std::int32_t rowCount = 0;  // of the area, with the line below the picture, if it is traced
 
   std::int32_t cells() const { return side * side; }
+  bool refining() const { return refinement != Refinement::all; }  // there are pixels with a single sample
 };
-// Throws std::invalid_argument when pixelArea(spec) is nothing or there are not 1..8 samples per side.
+// Throws std::invalid_argument when pixelArea(spec) is nothing or there are not 1..64 samples per side.
 SamplingRules samplingRules(const PictureSpec& spec, std::uint64_t seed, std::uint32_t frame);
 
 struct Place {  // of a pixel, from the upper left of the area
@@ -47,6 +49,7 @@ struct Place {  // of a pixel, from the upper left of the area
 // What is asked of a pixel before anything is known of it.
 enum class Asked : std::uint8_t { nothing, first, all };
 Asked askedOf(const SamplingRules& rules, Place place);
+std::uint64_t pixelsAskedForAll(const SamplingRules& rules);
 // The cell of the first sample: 0 where all are asked for, else chosen at random.
 std::int32_t firstCell(const SamplingRules& rules, Place place);
 inline SampleId sampleAt(const SamplingRules& rules, Place place, std::int32_t cell) {
@@ -71,6 +74,7 @@ class PixelRows {
   // Requires that the row of the place is held, as all that follows.
   bool isFull(Place place) const { return has(place, kFull); }    // all of its samples are demanded
   bool isWhole(Place place) const { return has(place, kWhole); }  // and have come
+  bool isBegun(Place place) const { return has(place, kFirst); }  // its first sample has come
   bool isKnown(Place place) const { return has(place, isFull(place) ? kWhole : kFirst); }
   Color color(Place place) const {
     return isFull(place) ? whole(place) : first(place);
@@ -97,7 +101,8 @@ class PixelRows {
     std::int32_t incomplete = 0;  // pixels whose colour is not known
   };
   struct Cells {
-    std::uint64_t come = 0;  // one bit each
+    std::int32_t count = 0;  // that have come
+    std::vector<bool> come;
     std::vector<Color> colors;
   };
 

@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rayshade/sampling/sample_position.h"
 
+#include <algorithm>
+#include <array>
+#include <numeric>
+
+#include "rayshade/sampling/filter.h"
+
 namespace rayshade {
 namespace {
 
@@ -25,44 +31,106 @@ constexpr std::span<const std::uint8_t> kNumbers[] = {kNumbers1, kNumbers2, kNum
 
 }  // namespace
 
+// Beyond those of rayshade: multiples of the golden section, in one direction or the other the next that has no common divisor
+// with the number of samples.
 std::int32_t sampleNumber(std::int32_t side, std::int32_t cell) {
-  return kNumbers[side - 1][static_cast<std::size_t>(cell)];
+  if (side <= std::ssize(kNumbers)) return kNumbers[side - 1][static_cast<std::size_t>(cell)];
+  const std::int32_t cells = side * side;
+  std::int32_t step = static_cast<std::int32_t>(0.618 * cells);
+  while (std::gcd(step, cells) != 1) ++step;
+  return static_cast<std::int32_t>(std::int64_t{step} * cell % cells);
 }
 
 namespace {
 
+// From [0, 1) to the columns of cells of a pixel (its rows alike), each met as often as the filter weighs it.  So samples are
+// dense where they count, and all weigh the same.
+class Columns {
+ public:
+  Columns(const PixelFilter& filter, std::int32_t side) : side_(side) {
+    if (!filter.gaussian) return;
+    double total = 0;
+    for (std::int32_t column = 0; column < side; ++column)
+      bounds_[static_cast<std::size_t>(column) + 1] = total += columnWeight(filter, side, column);
+    weighted_ = total > 0;
+    for (double& bound : bounds_) bound /= total;
+  }
+  double operator()(double x) const {
+    if (!weighted_) return x;
+    std::size_t column = 0;
+    while (column + 1 < static_cast<std::size_t>(side_) && x >= bounds_[column + 1]) ++column;
+    const double low = bounds_[column], high = bounds_[column + 1];
+    return (static_cast<double>(column) + (x - low) / (high - low)) / side_;
+  }
+
+ private:
+  std::int32_t side_;
+  bool weighted_ = false;
+  std::array<double, kMaxSamplesPerSide + 1> bounds_{};
+};
+
 // What the samples of a frame have in common.
+// differs from rayshade4: samples are points of a net unless strata are asked for (sample_plan.h).
 struct SampleGrid {
-  std::int32_t side;
+  SamplePlan plan;
   bool jitter;
-  double width, cell;  // of the filter, of a cell of a pixel                                        [pixels]
-  double opens, stratum;  // of a sample in time; 0: all are taken when the shutter opens         [scene time]
+  double width;           // of the filter                                                          [pixels]
+  double opens, shutter;  // shutter 0: all samples are taken when it opens                     [scene time]
   RandomKey key;
+  Columns columns;
 
   SampleGrid(const PictureSpec& spec, std::uint64_t seed, std::uint32_t frame)
-      : side(spec.samplesPerSide),
+      : plan(spec.plan()),
         jitter(spec.jitter),
         width(spec.filter.width),
-        cell(width / side),
         opens(spec.startTime + frame * spec.frameLength),
-        stratum(spec.shutter > 0 ? spec.shutter / (side * side) : 0),
-        key(frameKey(seed, frame)) {}
+        shutter(std::max(spec.shutter, 0.0)),
+        key(frameKey(seed, frame)),
+        columns(spec.filter, plan.side) {}
 
   // The pixel (x, y) is the square of the filter's width around the screen position (x, y), not around its middle: so
-  // does rayshade 4.  Without jitter a sample sits in the upper left corner of its cell.
+  // does rayshade 4.
   SamplePosition operator()(const SampleId& id) const {
     SamplePosition at;
-    at.key = sampleKey(key, static_cast<std::uint32_t>(id.x), static_cast<std::uint32_t>(id.y),
-                       static_cast<std::uint32_t>(id.cell));
-    at.side = side;
-    at.number = side == 1 ? 0 : sampleNumber(side, id.cell);
+    at.plan = plan;
+    at.time = opens;
+    const RandomKey pixel = pixelKey(key, static_cast<std::uint32_t>(id.x), static_cast<std::uint32_t>(id.y));
+    if (plan.sampling == Sampling::nets) {
+      at.key = pixel;
+      at.number = id.cell;
+    } else {
+      at.key = child(pixel, static_cast<std::uint32_t>(id.cell));
+      at.number = plan.side == 1 ? 0 : sampleNumber(plan.side, id.cell);
+    }
+    if (plan.sampling == Sampling::nets && jitter) {
+      inNet(id, at);
+    } else {
+      inCell(id, at);
+    }
+    return at;
+  }
+
+ private:
+  void inNet(const SampleId& id, SamplePosition& at) const {
+    const SquarePoint place = plan.anywhere(id.cell, at.key, 0, Dimension::jitterX, Dimension::jitterY);
+    at.u = id.x + (columns(place.x) - 0.5) * width;
+    at.v = id.y + (columns(place.y) - 0.5) * width;
+    if (shutter > 0)
+      at.time += shutter * plan.anywhere(id.cell, at.key, plan.uses.time, Dimension::time, Dimension::time).x;
+  }
+
+  // Without jitter a sample sits in the upper left corner of its cell.
+  void inCell(const SampleId& id, SamplePosition& at) const {
+    const std::int32_t side = plan.side;
+    const double cell = width / side;
     auto jittered = [&](Dimension dimension) { return jitter ? uniform(at.key, dimension) : 0.0; };
     const std::int32_t row = side == 1 ? 0 : id.cell / side, column = id.cell - row * side;
     at.u = id.x - width / 2 + (column + jittered(Dimension::jitterX)) * cell;
     at.v = id.y - width / 2 + (row + jittered(Dimension::jitterY)) * cell;
-    at.time = opens;
-    if (stratum > 0) at.time += stratum * (at.number + jittered(Dimension::time));
-    return at;
+    if (shutter > 0) {
+      const std::int32_t number = side == 1 ? 0 : sampleNumber(side, id.cell);
+      at.time += shutter / (side * side) * (number + jittered(Dimension::time));
+    }
   }
 };
 
@@ -81,8 +149,9 @@ void samplePositions(const PictureSpec& spec, std::uint64_t seed, std::uint32_t 
 
 // The lens is always jittered: without it there would be side^2 sharp pictures on top of each other.
 LensPosition lensPosition(const SamplePosition& at) {
-  return {2 * (at.number % at.side + uniform(at.key, Dimension::lensX)) / at.side - 1,
-          2 * (at.number / at.side + uniform(at.key, Dimension::lensY)) / at.side - 1};
+  const SquarePoint through =
+      at.plan.inStratum(at.number, at.key, at.plan.uses.lens, Dimension::lensX, Dimension::lensY);
+  return {2 * through.x - 1, 2 * through.y - 1};
 }
 
 }  // namespace rayshade

@@ -23,12 +23,11 @@ void serialize(Archive& archive, SampleId& s) {
 
 // Where and when a sample is taken.
 struct SamplePosition {
-  double u = 0, v = 0;    // on the screen                                     [pixels]
-  double time = 0;        // scene time
-  std::int32_t side = 1;  // of the pixel, in samples
-  std::int32_t number =
-      0;            // stratum of lens, time, lights and gloss: column number % side, row number / side
-  RandomKey key{};  // of the sample: all that is random about its rays comes from it
+  double u = 0, v = 0;      // on the screen                                     [pixels]
+  double time = 0;          // scene time
+  std::int32_t number = 0;  // of the net; of strata, that of lens, time, lights and gloss
+  RandomKey key{};          // with the number and the plan, all that is random about its rays comes from it
+  SamplePlan plan;
 };
 
 // Where the ray of a sample goes through the lens, in the square [-1, 1]^2.
@@ -37,8 +36,8 @@ struct LensPosition {
 };
 LensPosition lensPosition(const SamplePosition& at);
 
-// The stratum of a cell; side is 1..8, cell 0..side^2-1.  As in rayshade 4 the numbers start from 1 for sides
-// 6, 7 and 8, so one cell of each pixel has the number side^2, just outside of the square of strata.
+// The stratum of a cell 0..side^2-1.  As in rayshade 4 the numbers start from 1 for sides 6, 7 and 8, so one cell of each pixel has
+// the number side^2, just outside of the square of strata.
 std::int32_t sampleNumber(std::int32_t side, std::int32_t cell);
 
 // A pure function: any task gets the same position.  `frame` counts from 0 at spec.startTime.

@@ -28,7 +28,7 @@ PixelRows rowsOf(SamplingRules rules) {
 
 Sampler::Sampler(const PictureSpec& spec, std::uint64_t seed, std::uint32_t frame, std::int32_t tileSide)
     : rows_(rowsOf(samplingRules(spec, seed, frame))),
-      sweep_(rows_, rules().refining ? rules().rowCount : 0),
+      sweep_(rows_, rules().rowCount),
       tileSide_(tileSide),
       rowsAhead_(std::max(kTilesAhead * tileSide, kPixelsAhead / area().width)) {}
 
@@ -95,16 +95,24 @@ void Sampler::supply(const SampleId& id, Color color) {
 }
 
 bool Sampler::takeRow(std::vector<Color>& row) {
-  return !finished() && sweep_.isPast(rows_.first()) && rows_.takeFirst(row);
+  const PixelArea& wanted = rules().wanted;
+  while (!finished() && sweep_.isPast(rows_.first()) && rows_.takeFirst(row)) {
+    if (rows_.first() <= wanted.y) continue;  // it was there to decide about others
+    row.erase(row.begin() + wanted.x + wanted.width, row.end());
+    row.erase(row.begin(), row.begin() + wanted.x);
+    return true;
+  }
+  return false;
 }
 
 Completed Sampler::completed() const {
   const auto width = static_cast<std::uint64_t>(area().width),
              height = static_cast<std::uint64_t>(area().height);
   const auto cells = static_cast<std::uint64_t>(rules().cells());
-  Completed done{rows_.first(), area().height, rows_.counts.given, width * height * cells};
-  if (!rules().refining) return done;
-  const std::uint64_t inside = (width - 2) * (height - 2), border = width * height - inside;
+  Completed done{std::max(rows_.first() - rules().wanted.y, 0), rules().wanted.height, rows_.counts.given,
+                 width * height * cells};
+  if (!rules().refining()) return done;
+  const std::uint64_t border = pixelsAskedForAll(rules()), inside = width * height - border;
   const double onBorder = static_cast<double>(comeOnBorder_ * cells);
   const double each = comeInside_ == 0 ? static_cast<double>(cells)
                                        : std::max(static_cast<double>(done.samples) - onBorder, 0.0) /

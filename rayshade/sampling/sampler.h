@@ -4,9 +4,9 @@
 // supply() in any order, finished rows leave with takeRow().  The rows depend on the colours alone, never on the order or on
 // how much is on the way.
 //
-// Adaptive supersampling (rayshade 4): row 0, the last row and the first and last column get all of their
-// side^2 samples, every other pixel first gets one in a cell chosen at random.  Then it is decided which of them get all
-// of theirs (cross_sweep.h), in a strict order.  Whoever traces a tile decides most of that (tile_sampler.h); the exact sweep
+// Adaptive supersampling: pixels first get one sample, chosen at random; by the rule of rayshade 4 row 0, the last row and the first
+// and last column of the screen all of their side^2.  Then it is decided which of them get all of theirs (cross_sweep.h).  What is
+// wanted may be a window of the screen: then what decides about its pixels is sampled, too, so that they are those of the whole.  Whoever traces a tile decides most of that (tile_sampler.h); the exact sweep
 // over the picture trails behind, and nextSamples() gives what it finds missing.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
@@ -53,7 +53,7 @@ class Sampler {
   bool takeRow(std::vector<Color>& row);
 
   // All rows have been taken; what is still on the way is of no use.
-  bool finished() const { return rows_.first() >= area().height; }
+  bool finished() const { return rows_.first() >= rules().wanted.y + rules().wanted.height; }
 
  private:
   PixelRows rows_;

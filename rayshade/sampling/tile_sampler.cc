@@ -21,7 +21,7 @@ bool fit(const TileColors& colors, const Tile& tile) {
 TileSampler::TileSampler(const SamplingRules& rules, const Tile& tile)
     : tile_(tile),
       rows_(rules, tile.x, tile.width, tile.y),
-      sweep_(rows_, rules.refining ? tile.y + tile.height : tile.y),
+      sweep_(rows_, tile.y + tile.height),
       begin_{tile.y, tile.x} {
   for (std::int32_t y = 0; y < tile.height; ++y) rows_.add();
   skipUnasked();

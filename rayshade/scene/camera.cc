@@ -3,6 +3,8 @@
 
 #include <numbers>
 
+#include "rayshade/base/elementary.h"
+
 namespace rayshade {
 namespace {
 
@@ -36,7 +38,7 @@ std::optional<View> viewOf(const Camera& camera, const PictureSpec& picture) {
   const double verticalFov =
       camera.verticalFov.value_or(camera.horizontalFov * picture.height / picture.width);
   auto pixel = [&](double degrees, int count) {
-    return 2 * axes->distance * std::tan(degrees / 2 * std::numbers::pi / 180) / count;
+    return 2 * axes->distance * elementary::tan(degrees / 2 * std::numbers::pi / 180) / count;
   };
   View view;
   view.eye = eye;

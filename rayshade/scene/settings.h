@@ -30,9 +30,9 @@ struct SceneSettings {
   double airIndex = 1;                // of refraction, outside of everything
   std::vector<AnyEffect> atmosphere;  // in the order of the file
   Limits limits;
-  bool shadows = true;              // -n turns them off
-  bool transparentShadows = true;   // `shadowtransp` and -o toggle
-  std::int32_t samplesPerSide = 3;  // of a pixel: strata of lights and gloss
+  bool shadows = true;             // -n turns them off
+  bool transparentShadows = true;  // `shadowtransp` and -o toggle
+  SamplePlan samples;              // as those of the picture
 };
 
 struct Camera {
@@ -82,6 +82,15 @@ struct SceneHead {
   StatementPlaces places;
 };
 
+// Tells the settings what the picture's samples are, and who uses which of their coordinates.
+inline void agreeOnSamples(SceneHead& head) {
+  const auto isWide = [](const LightSource& light) { return isRandom(light); };
+  head.picture.uses = sampleUses(
+      head.camera.aperture > 0, std::any_of(head.settings.lights.begin(), head.settings.lights.end(), isWide),
+      head.picture.shutter > 0);
+  head.settings.samples = head.picture.plan();
+}
+
 template <class Archive>
 void serialize(Archive& archive, Limits& l) {
   archive(l.maxDepth, l.cutoff);
@@ -89,13 +98,7 @@ void serialize(Archive& archive, Limits& l) {
 template <class Archive>
 void serialize(Archive& archive, SceneSettings& s) {
   archive(s.lights, s.ambient, s.background, s.airIndex, s.atmosphere, s.limits, s.shadows,
-          s.transparentShadows, s.samplesPerSide);
-  if constexpr (Archive::kReading) {
-    if (s.samplesPerSide < 1) {
-      s.samplesPerSide = 1;
-      archive.fail();
-    }
-  }
+          s.transparentShadows, s.samples);
 }
 
 }  // namespace rayshade

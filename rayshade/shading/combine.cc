@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rayshade/shading/combine.h"
 
+#include "rayshade/base/elementary.h"
 #include "rayshade/optics/refraction.h"
 
 namespace rayshade {
@@ -18,7 +19,7 @@ Color throughAir(Color seen, Vec3 origin, Vec3 direction, double distance, const
 
 Color attenuated(Color sum, Vec3 origin, Vec3 direction, double distance, double extinct, bool inAir,
                  const SceneSettings& settings) {
-  if (extinct != 1) sum = std::pow(extinct, distance) * sum;
+  if (extinct != 1) sum = elementary::pow(extinct, distance) * sum;
   if (inAir && !settings.atmosphere.empty()) sum = throughAir(sum, origin, direction, distance, settings);
   return sum;
 }

@@ -12,13 +12,15 @@ namespace {
 // each work in the space that it leads to.
 class Climb {
  public:
-  Climb(const Ray& ray, const PathStep& shape, const ShapePoint& point, const Surface& surface, int side)
+  Climb(const Ray& ray, const PathStep& shape, const ShapePoint& point, const Surface& surface,
+        const SamplePlan& plan)
       : moment_(ray.moment), shapeNormal_(point.geometricNormal) {
     hit_.surface = surface;
     hit_.normal = point.normal;
     hit_.key = ray.key;
     hit_.sample = ray.sample;
-    hit_.side = side;
+    hit_.depth = ray.depth;
+    hit_.plan = plan;
     place_.position = point.position;
     place_.rayOrigin = shape.ray.origin;
     place_.rayDirection = shape.ray.direction;
@@ -113,7 +115,7 @@ void evaluateSurface(const Model& model, const Hit& hit, const HitPath& path, co
   for (const PathStep& step : path.steps)
     textured = textured || store.node(store.object(step.object).node).textured;
   if (textured) {
-    Climb climb(ray, last, shapePoint, at.surface, settings.samplesPerSide);
+    Climb climb(ray, last, shapePoint, at.surface, settings.samples);
     const auto ofPrimitive = [&](Vec3 position) {
       return withShape(store, store.object(last.object),
                        [&](const auto& shape) { return shape.coordinates(shapePoint, position); });

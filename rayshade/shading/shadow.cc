@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rayshade/shading/shadow.h"
 
+#include "rayshade/base/elementary.h"
 #include "rayshade/shading/evaluate.h"
 
 namespace rayshade {
@@ -29,7 +30,8 @@ bool passSurface(const Model& model, const Hit& hit, ShadowRay& shadow, const Sc
   if (boundSurface(model, path).transparency < kNegligible) return false;
   SurfacePoint at;
   evaluateSurface(model, hit, path, shadow.ray, settings, at);
-  if (shadow.inside) shadow.through = shadow.through * std::pow(shadow.insideExtinct, hit.t - shadow.last);
+  if (shadow.inside)
+    shadow.through = shadow.through * elementary::pow(shadow.insideExtinct, hit.t - shadow.last);
   shadow.through = limited(shadow.through * (at.surface.transparency * at.surface.body));
   if (!anyAbove(shadow.through, kNegligible)) return false;
   shadow.inside = at.entering;

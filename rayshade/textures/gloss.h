@@ -24,14 +24,14 @@ struct Gloss {
 
   const Surface* otherSurface() const { return nullptr; }
   void apply(TextureHit& hit) const {
-    const int column = hit.sample % hit.side, row = hit.sample / hit.side % hit.side;
-    // In the sample's part of [-1, 1).
-    auto deviation = [&hit](int part, Dimension dimension) {
-      return 2 * (part + uniform(hit.key, dimension, hit.turn)) / hit.side - 1;
-    };
+    const int number = hit.sample % (hit.plan.side * hit.plan.side);
+    const std::uint32_t coordinate =
+        hit.plan.uses.gloss + 2 * (static_cast<std::uint32_t>(hit.depth) + hit.turn);
+    const SquarePoint at =
+        hit.plan.inStratum(number, hit.key, coordinate, Dimension::glossX, Dimension::glossY, hit.turn);
     const Basis basis = basisAround(hit.normal);
-    hit.normal = bend(hit.normal, (1 - glossiness) * (deviation(column, Dimension::glossX) * basis.first +
-                                                      deviation(row, Dimension::glossY) * basis.second));
+    hit.normal =
+        bend(hit.normal, (1 - glossiness) * ((2 * at.x - 1) * basis.first + (2 * at.y - 1) * basis.second));
   }
 };
 

@@ -26,6 +26,7 @@
 #include "rayshade/base/random.h"
 #include "rayshade/base/vec.h"
 #include "rayshade/optics/surface.h"
+#include "rayshade/sampling/sample_plan.h"
 #include "rayshade/shapes/arguments.h"
 
 namespace rayshade {
@@ -39,11 +40,12 @@ enum class TextureNeeds : std::uint8_t { position, coordinates, ray };
 // at; texture space is what the inverse of the texture's own transforms makes of it.
 struct TextureHit {
   // What the textures of all levels pass on to each other.
-  Surface surface;         // may be changed
-  Vec3 normal;             // shading, towards the viewer, parent space, unit: may be changed, also in length
-  RandomKey key{};         // of the ray
-  int sample = 0;          // stratum: column sample % side, row sample / side
-  int side = 1;            // samples per pixel along each side
+  Surface surface;  // may be changed
+  Vec3 normal;      // shading, towards the viewer, parent space, unit: may be changed, also in length
+  RandomKey key{};  // of the ray
+  int sample = 0;   // number of the ray's sample
+  int depth = 0;    // of the ray
+  SamplePlan plan{};
   std::uint32_t turn = 0;  // how many textures were here before: sets their random numbers apart
 
   // What applyTexture() sets for each texture anew.

@@ -30,7 +30,8 @@ std::vector<Color> renderTiny(const std::string& example) {
   head.picture.width = 16;
   head.picture.height = 12;
   head.picture.window.reset();
-  head.picture.samplesPerSide = head.settings.samplesPerSide = std::min(head.picture.samplesPerSide, 2);
+  head.picture.samplesPerSide = std::min(head.picture.samplesPerSide, 2);
+  agreeOnSamples(head);
   scene.settings = head.settings;
   scene.prepare(exposureOf(head.picture, 0));
   std::vector<Color> pixels;

@@ -67,11 +67,20 @@ void expectSameWork(const TraceCounts& sequential, const TraceCounts& tasks) {
   EXPECT_EQ(tasks.transmittedRays, sequential.transmittedRays);
 }
 
+// A random scene, sampled in one of the ways there are: by nets or strata, by any rule, some of them cut out.
+Job randomJob(std::uint64_t seed) {
+  Job job = jobOfText(randomScene(seed));
+  if (seed % 4 == 1) job.options.sampling = "strata";
+  job.options.refinement = seed % 2 == 0 ? "neighbours" : "crosses";
+  if (seed % 3 == 0) job.options.crop = {0.2, 0.7, 0.3, 0.9};
+  return job;
+}
+
 TEST(Equivalence, AnyNumberOfThreadsGivesTheSameBits) {
   const std::uint64_t seeds = seedCount(40);
   for (std::uint64_t seed = 0; seed < seeds; ++seed) {
     SCOPED_TRACE("scene seed " + std::to_string(seed));
-    const Job job = jobOfText(randomScene(seed));
+    const Job job = randomJob(seed);
     const Rendered one = renderSequentially(job);
     for (const unsigned threads : {2u, 3u, 7u}) {
       const Rendered several = renderSequentially(job, 1, threads);
@@ -88,7 +97,7 @@ TEST(Equivalence, ThreadsOfTasksGiveTheSameBitsAfterDeaths) {
   std::uint64_t tiles = 0;
   for (std::uint64_t seed = 0; seed < seeds; ++seed) {
     SCOPED_TRACE("scene seed " + std::to_string(seed));
-    const Job job = jobOfText(randomScene(seed));
+    const Job job = randomJob(seed);
     HostOptions host;
     host.wishes.voxels = 1;
     host.wishes.shades = 0;
@@ -112,7 +121,7 @@ TEST(Equivalence, RandomScenesHaveTheSameBitsHoweverTheyAreSplit) {
   std::uint64_t colourful = 0;
   for (std::uint64_t seed = 0; seed < seeds; ++seed) {
     SCOPED_TRACE("scene seed " + std::to_string(seed));
-    const Job job = jobOfText(randomScene(seed));
+    const Job job = randomJob(seed);
     const Rendered expected = renderSequentially(job);
     for (std::uint64_t trial = 0; trial < 3; ++trial) {
       const Splitting split = randomSplit(3 * seed + trial);

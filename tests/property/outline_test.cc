@@ -29,7 +29,8 @@ Polygon somePolygon(Random& random) {
     const double radius = ragged > 0.3    ? 1 + 0.8 * random.real(-1, 1)
                           : ragged > -0.3 ? (i & 2 ? 0.8 : 1.0)
                                           : 1.0;
-    const Vec3 corner = centre + radius * (std::cos(angle) * basis.first + flat * std::sin(angle) * basis.second) +
+    const Vec3 corner = centre +
+                        radius * (std::cos(angle) * basis.first + flat * std::sin(angle) * basis.second) +
                         wobble * random.real(-1, 1) * normal;
     polygon.corners.push_back(corner * scale);
   }
@@ -67,7 +68,8 @@ TEST(Outline, AnswersAsTheExactTestDoes) {
       hits += t < kNoHit;
       ++asked;
       unsure += !polygon.outline->windsAround(
-          polygon.corners, ray, dot(polygon.normal, polygon.corners[0] - from) / dot(polygon.normal, ray.direction));
+          polygon.corners, ray,
+          dot(polygon.normal, polygon.corners[0] - from) / dot(polygon.normal, ray.direction));
     }
   }
   EXPECT_GT(hits, asked / 5);

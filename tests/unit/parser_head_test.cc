@@ -41,7 +41,6 @@ TEST(Parser, ReadsTheViewingStatements) {
   EXPECT_EQ(h.picture.window, (std::array<std::int32_t, 4>{1, 2, 3, 4}));
   EXPECT_EQ(h.picture.crop, (std::array<double, 4>{.1, .9, 0, 1}));
   EXPECT_EQ(h.picture.samplesPerSide, 4);
-  EXPECT_EQ(h.settings.samplesPerSide, 4);
   EXPECT_FALSE(h.picture.jitter);
   EXPECT_TRUE(h.picture.filter.gaussian);
   EXPECT_EQ(h.picture.filter.width, 1.8);
@@ -145,7 +144,7 @@ TEST(Parser, ChecksWhatTheCommandLineMayHaveChanged) {
     change(head.picture);
     return headError(head);
   };
-  EXPECT_NE(errorAfter([](PictureSpec& p) { p.samplesPerSide = 9; }).find("sample count of 9"),
+  EXPECT_NE(errorAfter([](PictureSpec& p) { p.samplesPerSide = 65; }).find("sample count of 65"),
             std::string::npos);
   EXPECT_NE(errorAfter([](PictureSpec& p) { p.width = 0; }).find("screen"), std::string::npos);
   EXPECT_NE(errorAfter([](PictureSpec& p) { p.height = 1'000'000'000; }).find("screen"), std::string::npos);

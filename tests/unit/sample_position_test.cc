@@ -8,8 +8,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <set>
 #include <vector>
 
+#include "rayshade/sampling/filter.h"
 #include "tests/support/traced_tile.h"
 
 namespace rayshade {
@@ -17,12 +19,18 @@ namespace {
 
 constexpr std::uint64_t kSeed = 7;
 
+PictureSpec strataOf(std::int32_t width, std::int32_t height, std::int32_t side) {
+  PictureSpec spec = specOf(width, height, side);
+  spec.sampling = Sampling::strata;
+  return spec;
+}
+
 TEST(SampleNumbers, AreAPermutationOfTheStrata) {
-  for (std::int32_t side = 1; side <= 8; ++side) {
+  for (std::int32_t side = 1; side <= kMaxSamplesPerSide; ++side) {
     std::vector<std::int32_t> numbers, expected(static_cast<std::size_t>(side * side));
     for (std::int32_t cell = 0; cell < side * side; ++cell) numbers.push_back(sampleNumber(side, cell));
     std::sort(numbers.begin(), numbers.end());
-    std::iota(expected.begin(), expected.end(), side >= 6 ? 1 : 0);
+    std::iota(expected.begin(), expected.end(), side >= 6 && side <= 8 ? 1 : 0);
     EXPECT_EQ(numbers, expected) << side;
   }
 }
@@ -49,11 +57,14 @@ TEST(SamplePosition, WithoutJitterIsTheUpperLeftCornerOfTheCell) {
   const SamplePosition at = samplePosition(spec, kSeed, 0, {10, 20, 6});  // column 2, row 1
   EXPECT_EQ(at.u, 10.0);
   EXPECT_EQ(at.v, 19.5);
-  EXPECT_EQ(at.number, 14);
+  EXPECT_EQ(at.number, 6);
+  spec.sampling = Sampling::strata;
+  EXPECT_EQ(samplePosition(spec, kSeed, 0, {10, 20, 6}).number, 14);
+  EXPECT_EQ(samplePosition(spec, kSeed, 0, {10, 20, 6}).v, 19.5);
 }
 
 TEST(SamplePosition, WithJitterFillsTheCell) {
-  PictureSpec spec = specOf(64, 64, 2);
+  const PictureSpec spec = strataOf(64, 64, 2);
   double low = 1, high = 0, mean = 0;
   for (std::int32_t x = 0; x < 1000; ++x) {
     const SamplePosition at = samplePosition(spec, kSeed, 0, {x, 5, 1});
@@ -72,7 +83,7 @@ TEST(SamplePosition, WithJitterFillsTheCell) {
 }
 
 TEST(SamplePosition, TimeGoesByFrameAndStratum) {
-  PictureSpec spec = specOf(64, 64, 2);
+  PictureSpec spec = strataOf(64, 64, 2);
   spec.startTime = 10;
   spec.frameLength = 2;
   EXPECT_EQ(samplePosition(spec, kSeed, 3, {0, 0, 2}).time, 16);  // no shutter: the start of the frame
@@ -85,7 +96,7 @@ TEST(SamplePosition, TimeGoesByFrameAndStratum) {
 }
 
 TEST(SamplePosition, LensPointLiesInTheStratumOfTheNumber) {
-  const PictureSpec spec = specOf(64, 64, 3);
+  const PictureSpec spec = strataOf(64, 64, 3);
   for (std::int32_t cell = 0; cell < 9; ++cell) {
     const SamplePosition at = samplePosition(spec, kSeed, 0, {1, 2, cell});
     const LensPosition lens = lensPosition(at);
@@ -95,13 +106,66 @@ TEST(SamplePosition, LensPointLiesInTheStratumOfTheNumber) {
 }
 
 TEST(SamplePosition, DiffersBySeedFramePixelAndCell) {
-  const PictureSpec spec = specOf(64, 64, 3);
+  const PictureSpec spec = strataOf(64, 64, 3);
   const auto key = samplePosition(spec, 1, 1, {1, 2, 0}).key;
   EXPECT_EQ(samplePosition(spec, 1, 1, {1, 2, 0}).key, key);
   EXPECT_NE(samplePosition(spec, 2, 1, {1, 2, 0}).key, key);
   EXPECT_NE(samplePosition(spec, 1, 2, {1, 2, 0}).key, key);
   EXPECT_NE(samplePosition(spec, 1, 1, {2, 1, 0}).key, key);
   EXPECT_NE(samplePosition(spec, 1, 1, {1, 2, 1}).key, key);
+}
+
+TEST(SamplePosition, TheSamplesOfANetHaveOneKeyAndAPointEach) {
+  const PictureSpec spec = specOf(64, 64, 3);
+  const SamplePosition one = samplePosition(spec, 1, 1, {1, 2, 0}),
+                       other = samplePosition(spec, 1, 1, {1, 2, 5});
+  EXPECT_EQ(one.key, other.key);
+  EXPECT_EQ(other.number, 5);
+  EXPECT_NE(one.u, other.u);
+  EXPECT_NE(one.key, samplePosition(spec, 2, 1, {1, 2, 0}).key);
+  EXPECT_NE(one.key, samplePosition(spec, 1, 2, {1, 2, 0}).key);
+  EXPECT_NE(one.key, samplePosition(spec, 1, 1, {2, 1, 0}).key);
+}
+
+// Place in the pixel, lens and moment: as many different cells, columns and moments as there are samples.
+TEST(SamplePosition, ANetFillsPixelLensAndShutter) {
+  for (const std::int32_t side : {2, 3, 4, 5, 7, 8, 16}) {
+    PictureSpec spec = specOf(64, 64, side);
+    spec.shutter = 2;
+    spec.uses = sampleUses(true, false, true);
+    std::set<int> cells, throughLens, moments;
+    for (std::int32_t i = 0; i < side * side; ++i) {
+      const SamplePosition at = samplePosition(spec, kSeed, 0, {10, 20, i});
+      const LensPosition lens = lensPosition(at);
+      const auto in = [side](double x, double y) {
+        return static_cast<int>(std::floor(x * side)) + 1000 * static_cast<int>(std::floor(y * side));
+      };
+      cells.insert(in(at.u - 9.5, at.v - 19.5));
+      throughLens.insert(in((lens.x + 1) / 2, (lens.y + 1) / 2));
+      moments.insert(static_cast<int>(at.time / 2 * side * side));
+    }
+    EXPECT_EQ(std::ssize(cells), side * side) << side;
+    EXPECT_EQ(std::ssize(moments), side * side) << side;
+    if (side % 2 != 0) {
+      EXPECT_EQ(std::ssize(throughLens), side * side) << side;
+    }
+  }
+}
+
+// Samples that weigh the same are as dense as the filter is high: so their mean is that of samples that it weighs.
+TEST(SamplePosition, OfANetIsAsDenseAsTheFilterIsHigh) {
+  PictureSpec spec = specOf(64, 64, 3);
+  spec.filter = {true, 1.8};
+  const std::vector<double> weights = filterWeights(spec.filter, 3);
+  std::vector<double> share(9);
+  constexpr std::int32_t kPixels = 20000;
+  for (std::int32_t x = 0; x < kPixels; ++x) {
+    const SamplePosition at = samplePosition(spec, kSeed, 0, {x, 5, x % 9});
+    const auto column = static_cast<std::size_t>((at.u - x + 0.9) / 0.6),
+               row = static_cast<std::size_t>((at.v - 4.1) / 0.6);
+    share.at(column + 3 * row) += 1.0 / kPixels;
+  }
+  for (std::size_t cell = 0; cell < 9; ++cell) EXPECT_NEAR(share[cell], weights[cell], 0.01) << cell;
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <functional>
 #include <numeric>
+#include <tuple>
 #include <variant>
 
 #include "rayshade/sampling/filter.h"
@@ -31,70 +32,116 @@ Color colorOf(const PictureSpec& spec, const SampleId& id) {
   return {0.2 + at.u / 200, 0.3, 0.4 + at.v / 300};
 }
 
-// The rule as it stands in rayshade, with all of the picture and of the line below it in memory.
+// The rules as they stand, with all of the screen and of the line below it in memory; then the window is cut out.
 struct Reference {
   Rows rows;
-  std::uint64_t refined = 0;
+  std::uint64_t refined = 0;  // of all that is sampled
 };
-Reference reference(const PictureSpec& spec) {
-  const PixelArea area = *pixelArea(spec);
-  const int side = spec.samplesPerSide, cells = side * side;
-  const auto weights = filterWeights(spec.filter, side);
+class WholeScreen {
+ public:
+  explicit WholeScreen(const PictureSpec& spec)
+      : spec_(spec),
+        side_(spec.samplesPerSide),
+        weights_(filterWeights(spec.jitter && spec.sampling == Sampling::nets ? PixelFilter{} : spec.filter,
+                               side_)),
+        lines_(static_cast<std::size_t>(spec.height) + 1,
+               std::vector<Pixel>(static_cast<std::size_t>(spec.width))) {}
+
+  Reference refined() {
+    Reference result;
+    if (spec_.refinement == Refinement::neighbours && side_ > 1) {
+      result.refined = byNeighbours();
+    } else {
+      result.refined = byCrosses();
+    }
+    const PixelArea area = *pixelArea(spec_);
+    for (int y = area.y; y < area.y + area.height; ++y) {
+      result.rows.emplace_back();
+      for (int x = area.x; x < area.x + area.width; ++x) result.rows.back().push_back(at(x, y).color);
+    }
+    return result;
+  }
+
+ private:
   struct Pixel {
     Color color;
     int cell = 0;
     bool full = false;
   };
-  std::vector<std::vector<Pixel>> lines(static_cast<std::size_t>(area.height) + 1,
-                                        std::vector<Pixel>(static_cast<std::size_t>(area.width)));
-  auto at = [&](int x, int y) -> Pixel& {
-    return lines[static_cast<std::size_t>(y)][static_cast<std::size_t>(x)];
-  };
-  auto trace = [&](int x, int y, int cell) { return colorOf(spec, {area.x + x, area.y + y, cell}); };
-  auto fill = [&](int x, int y) {
+
+  Pixel& at(int x, int y) { return lines_[static_cast<std::size_t>(y)][static_cast<std::size_t>(x)]; }
+  Color trace(int x, int y, int cell) const { return colorOf(spec_, {x, y, cell}); }
+  void begin(int x, int y) {
+    const RandomKey key =
+        sampleKey(kSeed, kFrame, static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), 0xffffffffu);
+    at(x, y).cell = static_cast<int>(uniform(key, Dimension::firstCell) * side_ * side_);
+    at(x, y).color = trace(x, y, at(x, y).cell);
+  }
+  void fill(int x, int y) {
     Pixel& pixel = at(x, y);
     const std::size_t first = static_cast<std::size_t>(pixel.cell);
-    pixel.color = trace(x, y, pixel.cell) * weights[first];
-    for (std::size_t cell = 0; cell < weights.size(); ++cell)
-      if (cell != first) pixel.color = pixel.color + trace(x, y, static_cast<int>(cell)) * weights[cell];
+    pixel.color = trace(x, y, pixel.cell) * weights_[first];
+    for (std::size_t cell = 0; cell < weights_.size(); ++cell)
+      if (cell != first) pixel.color = pixel.color + trace(x, y, static_cast<int>(cell)) * weights_[cell];
     pixel.full = true;
-  };
+  }
 
-  Reference result;
-  for (int y = 0; y <= area.height; ++y)
-    for (int x = 0; x < area.width; ++x) {
-      if (y == 0 || y == area.height - 1 || x == 0 || x == area.width - 1) {
+  std::uint64_t byNeighbours() {
+    for (int y = 0; y < spec_.height; ++y)
+      for (int x = 0; x < spec_.width; ++x) begin(x, y);
+    const auto firsts = lines_;
+    std::uint64_t refined = 0;
+    for (int y = 0; y < spec_.height; ++y)
+      for (int x = 0; x < spec_.width; ++x) {
+        std::vector<Color> around;
+        for (int v = std::max(y - 1, 0); v <= std::min(y + 1, spec_.height - 1); ++v)
+          for (int u = std::max(x - 1, 0); u <= std::min(x + 1, spec_.width - 1); ++u)
+            if (u != x || v != y)
+              around.push_back(firsts[static_cast<std::size_t>(v)][static_cast<std::size_t>(u)].color);
+        if (around.empty() || !tooMuchContrast(around, spec_.contrast)) continue;
         fill(x, y);
-        continue;
+        ++refined;
       }
-      const RandomKey key = sampleKey(kSeed, kFrame, static_cast<std::uint32_t>(area.x + x),
-                                      static_cast<std::uint32_t>(area.y + y), 0xffffffffu);
-      at(x, y).cell = static_cast<int>(uniform(key, Dimension::firstCell) * cells);
-      at(x, y).color = trace(x, y, at(x, y).cell);
-    }
-  for (int y = 1; cells > 1 && y < area.height; ++y) {
-    for (bool changed = true; changed;) {
-      changed = false;
-      for (int x = 1; x + 1 < area.width; ++x) {
-        const int cross[5][2] = {{x, y - 1}, {x - 1, y}, {x, y}, {x + 1, y}, {x, y + 1}};
-        std::array<Color, 5> colors;
-        for (std::size_t i = 0; i < 5; ++i) colors[i] = at(cross[i][0], cross[i][1]).color;
-        if (!tooMuchContrast(colors, spec.contrast)) continue;
-        for (const auto& [cx, cy] : cross) {
-          if (at(cx, cy).full) continue;
-          fill(cx, cy);
-          changed = true;
-          if (cy < area.height) ++result.refined;
+    return refined;
+  }
+
+  std::uint64_t byCrosses() {
+    const int width = spec_.width, height = spec_.height;
+    for (int y = 0; y <= height; ++y)
+      for (int x = 0; x < width; ++x) {
+        if (side_ == 1 || y == 0 || y == height - 1 || x == 0 || x == width - 1) {
+          fill(x, y);
+        } else {
+          begin(x, y);
+        }
+      }
+    std::uint64_t refined = 0;
+    for (int y = 1; side_ > 1 && y < height; ++y) {
+      for (bool changed = true; changed;) {
+        changed = false;
+        for (int x = 1; x + 1 < width; ++x) {
+          const int cross[5][2] = {{x, y - 1}, {x - 1, y}, {x, y}, {x + 1, y}, {x, y + 1}};
+          std::array<Color, 5> colors;
+          for (std::size_t i = 0; i < 5; ++i) colors[i] = at(cross[i][0], cross[i][1]).color;
+          if (!tooMuchContrast(colors, spec_.contrast)) continue;
+          for (const auto& [cx, cy] : cross) {
+            if (at(cx, cy).full) continue;
+            fill(cx, cy);
+            changed = true;
+            if (cy < height) ++refined;
+          }
         }
       }
     }
+    return refined;
   }
-  for (int y = 0; y < area.height; ++y) {
-    result.rows.emplace_back();
-    for (int x = 0; x < area.width; ++x) result.rows.back().push_back(at(x, y).color);
-  }
-  return result;
-}
+
+  const PictureSpec& spec_;
+  int side_;
+  std::vector<double> weights_;
+  std::vector<std::vector<Pixel>> lines_;
+};
+Reference reference(const PictureSpec& spec) { return WholeScreen(spec).refined(); }
 
 // Chooses which of `count` things on the way comes next.
 using Order = std::function<std::size_t(std::size_t count)>;
@@ -179,8 +226,14 @@ TEST(Contrast, IsRelativeToTheSumOfTheExtremes) {
 TEST(Sampler, GivesTheRowsOfThePlainRuleForAnyOrder) {
   SeededRandom random(1);
   const Order anyOne = [&](std::size_t count) { return random.below(count); };
-  for (auto [side, contrast] : {std::pair{2, 1.0}, {3, 1.0}, {3, 0.5}, {6, 1.0}}) {
+  for (auto [side, contrast, refinement] : {std::tuple{2, 1.0, Refinement::crosses},
+                                            {3, 1.0, Refinement::neighbours},
+                                            {3, 0.5, Refinement::crosses},
+                                            {6, 1.0, Refinement::neighbours},
+                                            {12, 1.0, Refinement::neighbours}}) {
     PictureSpec spec = specOf(37, 29, side);
+    spec.refinement = refinement;
+    if (side == 2) spec.sampling = Sampling::strata;
     spec.contrast = spec.contrast * contrast;
     spec.filter = {side == 3, 1.8};
     const Reference expected = reference(spec);
@@ -209,16 +262,82 @@ TEST(Sampler, GivesTheRowsOfThePlainRuleForAnySize) {
                                  {20, 3},
                                  {8, 8},
                                  {9, 17}}) {
-      PictureSpec spec = specOf(40, 40, side);
-      spec.window = {4, 4 + width - 1, 6, 6 + height - 1};
-      for (std::int32_t tileSide : {1, 4, 32})
-        EXPECT_TRUE(run(spec, 50, anyOne, tileSide) == reference(spec).rows)
-            << width << " x " << height << " side " << side << " tiles " << tileSide;
+      PictureSpec spec = specOf(width, height, side);
+      for (const Refinement refinement : {Refinement::crosses, Refinement::neighbours}) {
+        spec.refinement = refinement;
+        for (std::int32_t tileSide : {1, 4, 32})
+          EXPECT_TRUE(run(spec, 50, anyOne, tileSide) == reference(spec).rows)
+              << width << " x " << height << " side " << side << " tiles " << tileSide;
+      }
     }
+}
+
+TEST(Sampler, AWindowHasThePixelsOfTheWholePicture) {
+  SeededRandom random(3);
+  const Order anyOne = [&](std::size_t count) { return random.below(count); };
+  for (const Refinement refinement : {Refinement::crosses, Refinement::neighbours, Refinement::all})
+    for (const std::array<std::int32_t, 4>& window : {std::array{0, 36, 0, 28},
+                                                      {0, 0, 0, 0},
+                                                      {36, 36, 28, 28},
+                                                      {10, 20, 5, 17},
+                                                      {0, 9, 27, 28},
+                                                      {4, 4, 0, 28},
+                                                      {7, 30, 26, 26}}) {
+      PictureSpec spec = specOf(37, 29, 3);
+      spec.refinement = refinement;
+      Rows expected;
+      if (refinement == Refinement::all) {
+        spec.contrast = kBlack;
+        expected = run(spec, 50, anyOne, 32);
+        expected.erase(expected.begin() + window[3] + 1, expected.end());
+        expected.erase(expected.begin(), expected.begin() + window[2]);
+        for (std::vector<Color>& row : expected) row = {row.begin() + window[0], row.begin() + window[1] + 1};
+      }
+      spec.window = window;
+      if (refinement != Refinement::all) expected = reference(spec).rows;
+      for (std::int32_t tileSide : {1, 5, 32})
+        EXPECT_TRUE(run(spec, 50, anyOne, tileSide) == expected)
+            << window[0] << " " << window[2] << " tiles " << tileSide << " rule "
+            << static_cast<int>(refinement);
+    }
+}
+
+TEST(Sampler, WithoutAContrastThatIsAllowedAllPixelsGetAllSamples) {
+  PictureSpec spec = specOf(13, 11, 3);
+  spec.contrast = kBlack;
+  SamplerCounts counts;
+  run(spec, 1, oldest, 4, &counts);
+  EXPECT_EQ(counts.given, 13u * 11u * 9u);
+}
+
+// A dot in the middle of a pixel, that fills a ninth of it: what comes of its light on the average.
+TEST(Sampler, NeighboursKeepTheLightOfSmallThingsAndCrossesLoseIt) {
+  const auto share = [](Refinement refinement) {
+    double sum = 0;
+    constexpr std::uint64_t kSeeds = 4000;
+    for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
+      PictureSpec spec = specOf(5, 5, 3);
+      spec.refinement = refinement;
+      Sampler sampler(spec, seed, 0);
+      std::vector<Color> row;
+      while (!sampler.finished()) {
+        EXPECT_TRUE(supplyNext(sampler, [&](const SampleId& id) {
+          const SamplePosition at = samplePosition(spec, seed, 0, id);
+          return std::abs(at.u - 2) < 1.0 / 6 && std::abs(at.v - 2) < 1.0 / 6 ? kWhite : kBlack;
+        }));
+        while (sampler.takeRow(row))
+          for (const Color& color : row) sum += color.r;
+      }
+    }
+    return 9 * sum / kSeeds;
+  };
+  EXPECT_NEAR(share(Refinement::neighbours), 1, 0.18);  // four deviations
+  EXPECT_LT(share(Refinement::crosses), 0.2);
 }
 
 TEST(Sampler, LineBelowThePictureRefinesTheLastLineButOne) {
   PictureSpec spec = specOf(5, 4, 2);
+  spec.refinement = Refinement::crosses;
   auto rowsWith = [&](double below) {
     Sampler sampler(spec, kSeed, kFrame);
     supplyNext(sampler, [&](const SampleId& id) {
@@ -237,7 +356,8 @@ TEST(Sampler, LineBelowThePictureRefinesTheLastLineButOne) {
 }
 
 TEST(Sampler, CountsWhatTheRuleAskedForWhateverRanAhead) {
-  const PictureSpec spec = specOf(37, 29, 3);
+  PictureSpec spec = specOf(37, 29, 3);
+  spec.refinement = Refinement::crosses;
   const std::uint64_t refined = reference(spec).refined, border = 2 * 37 + 2 * 27, inside = 35 * 27;
   const std::uint64_t samples = 9 * border + inside + 35 + 8 * refined;  // 35: the line below
   SamplerCounts counts;
@@ -352,7 +472,7 @@ TEST(Sampler, EvenLightStaysEven) {
 TEST(Sampler, RefusesImpossiblePictures) {
   EXPECT_THROW(Sampler(specOf(0, 5, 3), 0, 0), std::invalid_argument);
   EXPECT_THROW(Sampler(specOf(5, 5, 0), 0, 0), std::invalid_argument);
-  EXPECT_THROW(Sampler(specOf(5, 5, 9), 0, 0), std::invalid_argument);
+  EXPECT_THROW(Sampler(specOf(5, 5, 65), 0, 0), std::invalid_argument);
 }
 
 }  // namespace

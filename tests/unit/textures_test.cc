@@ -151,7 +151,7 @@ TEST(Gloss, StaysInTheStratumOfItsSample) {
     TextureHit hit = hitAt({});
     hit.key = child(RandomKey{}, static_cast<std::uint64_t>(sample));
     hit.sample = sample;
-    hit.side = side;
+    hit.plan = {side, Sampling::strata, {}};
     Gloss{0.5}.apply(hit);
     const Basis basis = basisAround({0, 0, 1});
     const Vec3 onPlane = hit.normal / hit.normal.z;
