@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "pvm/messages/task_context.h"
 #include "tests/support/compare_pictures.h"
 #include "tests/support/random.h"
 #include "tests/support/random_scene.h"
