@@ -130,7 +130,8 @@ TEST(TimedMachine, LatencyAndFewerProcessorsTakeLonger) {
   };
   const double usual = traceSeconds(5, 50e-6, 1);
   EXPECT_GT(traceSeconds(5, 20e-3, 1), usual + 0.03);
-  EXPECT_GT(traceSeconds(1, 50e-6, 1), usual);
+  // Small work is done sooner on one host, which has no network.
+  EXPECT_GT(traceSeconds(1, 50e-6, 0.01), 1.2 * traceSeconds(5, 50e-6, 0.01));
   EXPECT_GT(traceSeconds(5, 50e-6, 0.1), 2 * usual);
 }
 
