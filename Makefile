@@ -9,6 +9,7 @@
 #   make check-sanitized   the tests of what reads bytes of others or juggles tasks, under clang's sanitizers for
 #                     addresses and undefined behaviour; all tests: make SAN=address,undefined check
 #   make check-threads     pictures of several threads under clang's sanitizer for threads
+#   make check-processors  the same bits from other compilers, options and processors (an hour; arm64 under an emulator)
 #   make docs         the generated parts of the documents (docs/generate); `make check` finds what is out of date
 #   make fuzz         the fuzzers, FUZZ_SECONDS each, in the same build tree
 #   make bench        docs/speed-and-error.md: measures error against time (a few minutes)
@@ -89,7 +90,7 @@ pages := $(documented:%=$(BIN)/share/man/man1/%.1) $(patsubst %,$(BIN)/share/man
 completions := $(documented:%=$(BIN)/share/bash-completion/completions/%)
 test_programs := $(BIN)/rayshade-tests $(BIN)/link-tests $(BIN)/pvm-tests
 
-.PHONY: all man demo docs check check-sanitized check-threads build-tests test guarded install install-files uninstall fuzz fuzzers bench benches bench-splitting bench-embree experiments prove-adding graph format clean packages always
+.PHONY: all man demo docs check check-sanitized check-threads check-processors build-tests test guarded install install-files uninstall fuzz fuzzers bench benches bench-splitting bench-embree experiments prove-adding graph format clean packages always
 all: $(programs) $(pages) $(completions)
 man: $(pages)
 
@@ -126,7 +127,7 @@ $(BUILD)/libsupport.a: $(support)
 $(BUILD)/lib%.a: $(BUILD)/sources
 	$(call say,collect $@)
 	@rm -f $@
-	$(quietly)ar rcs $@ $(filter %.o,$^)
+	$(quietly)$(AR) rcs $@ $(filter %.o,$^)
 
 define link
 @mkdir -p $(@D)
@@ -160,7 +161,7 @@ $(BIN)/share/bash-completion/completions/%: $(BIN)/%
 	$(quietly)$< --completions >$@.part
 	@mv $@.part $@
 $(BIN)/rayshade-tests: $(tests) $(fuzzed) $(oracle) $(BUILD)/libsupport.a $(libraries)
-	$(call link,-lgtest -lgtest_main -lpthread)
+	$(call link,-lgtest -lgtest_main -lpthread -lmpfr)
 $(BIN)/guarded-tests: $(guarded_tests) $(fuzzed) $(BUILD)/libsupport.a $(libraries)
 	$(call link,-lgtest -lgtest_main -lpthread)
 $(BIN)/link-tests: $(link_tests) $(pvm_door) $(BUILD)/libsupport.a $(libraries)
@@ -186,15 +187,18 @@ check: packages
 check-sanitized:
 	@tests/support/install_packages nice
 	@$(MAKE) $(sanitized) guarded
+check-processors: all $(BIN)/rayshade-tests
+	@tests/support/install_packages processors
+	@tests/support/check_processors $(BUILD) $(BIN)
 check-threads: $(BUILD)/threaded/program $(BIN)/rayshade
 	@tests/support/check_threads $^
 build-tests: all $(test_programs)
 test: build-tests
-	@tests/support/run_tests $(BIN)
+	@tests/support/run_shards $(BIN) $(notdir $(test_programs))
 
 # Sanitizers make tests eight times slower: fewer random scenes than without.
 guarded: $(BIN)/guarded-tests
-	@RAYSHADE_TEST_SEEDS=$${RAYSHADE_TEST_SEEDS:-30} tests/support/run_shards $(BIN) guarded-tests
+	@RAYSHADE_TEST_SEEDS=$${RAYSHADE_TEST_SEEDS:-20} tests/support/run_shards $(BIN) guarded-tests
 
 benches: $(benches)
 bench-embree: LIBRARIES += -lembree3
@@ -204,7 +208,7 @@ bench: $(BIN)/rayshade $(BIN)/rayshade-error $(BIN)/spd
 	@PYTHONDONTWRITEBYTECODE=1 tests/bench/speed_and_error/run --bin $(BIN) docs
 
 bench-splitting: all benches
-	@tests/bench/splitting
+	@tests/bench/plot_splitting
 	@tests/bench/start_up || true
 	@tests/bench/memory || true
 

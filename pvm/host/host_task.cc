@@ -6,6 +6,7 @@
 #include "pvm/host/shipping.h"
 #include "pvm/messages/task_context.h"
 #include "pvm/schedule/division.h"
+#include "rayshade/base/arithmetic.h"
 #include "rayshade/base/interruption.h"
 #include "rayshade/trace/render.h"
 

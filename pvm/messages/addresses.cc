@@ -27,6 +27,10 @@ std::optional<std::uint32_t> placeAmong(const std::vector<TaskId>& tasks, TaskId
   return static_cast<std::uint32_t>(found - tasks.begin());
 }
 
+bool isTracer(const Directory& directory, TaskId task) {
+  return placeAmong(directory.voxelTasks, task) || placeAmong(directory.pyramidTasks, task);
+}
+
 std::size_t chooseShadeTask(const Directory& directory, std::uint64_t serial) {
   if (directory.shadeTasks.size() <= 1) return 0;
   std::uint64_t sum = 0;

@@ -52,6 +52,7 @@ struct Directory {
 };
 // The tasks that trace, which number the intersections that they find: voxel tasks come first.
 inline std::size_t finderCount(const Directory& d) { return d.voxelTasks.size() + d.pyramidTasks.size(); }
+bool isTracer(const Directory& directory, TaskId task);
 // How many tasks trace on the machine of one of them, itself included; `finder`: its place among all that trace.
 std::uint32_t tracersBeside(const Directory& directory, std::size_t finder);
 // Does it fit together, and has every voxel of the tree an owner?

@@ -2,17 +2,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "pvm/messages/addresses.h"
 #include "rayshade/base/type_list.h"
 #include "rayshade/scene/items.h"
-#include "rayshade/space/bintree.h"
 
 namespace rayshade {
 
-// From a task that traces with fetched cells, to the owner of the cell's voxel: its objects are wanted.
+// From a task that traces with fetched cells, to the owner of the cell's voxel: its objects are wanted.  From the owner, to somebody
+// who got them before: give them to the asker.  From him to the owner: he does not have them any more.
 struct CellWanted {
   static constexpr bool isFact = false;
   static constexpr std::uint8_t tag = 15;
   CellId cell{};
+  TaskId asker = kNobody;  // kNobody: the sender
 };
 // The answer to CellWanted: the objects of the cell.
 struct CellItems {
@@ -33,7 +35,7 @@ struct CacheCounts {
 
 template <class Archive>
 void serialize(Archive& archive, CellWanted& m) {
-  archive(m.cell);
+  archive(m.cell, m.asker);
 }
 
 template <class Archive>

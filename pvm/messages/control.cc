@@ -2,7 +2,6 @@
 #include "pvm/messages/control.h"
 
 #include <algorithm>
-#include <bit>
 
 namespace rayshade {
 
@@ -23,26 +22,6 @@ Ray primaryRay(const FrameRequest& request, const Exposure& exposure, const Samp
   const SamplePosition position =
       samplePosition(request.picture, request.seed, static_cast<std::uint32_t>(exposure.frame), sample);
   return primaryRay(request.view, position, exposure.frame);
-}
-
-std::uint64_t arithmeticFingerprint() {
-  std::uint64_t hash = 0;
-  auto add = [&hash](double value) { hash = mixBits(hash ^ std::bit_cast<std::uint64_t>(value)); };
-  RandomKey key = sampleKey(1, 2, 3, 4, 5);
-  for (std::uint32_t i = 0; i < 1000; ++i) {
-    const double x = uniform(key, Dimension::jitterX, i), y = 20 * uniform(key, Dimension::jitterY, i);
-    add(std::pow(x, y));
-    add(std::exp(-y));
-    add(std::sin(y));
-    add(std::cos(y));
-    add(std::log(x + 1e-9));
-    add(std::atan2(x, y));
-    add(std::acos(x));
-    add(std::asin(x));
-    add(std::tan(x));
-    add(x * y + x);  // tells a fused multiply-add
-  }
-  return hash;
 }
 
 }  // namespace rayshade

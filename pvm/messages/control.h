@@ -138,10 +138,6 @@ bool isComplete(const Configure& message);
 // Are primary rays traced in tiles, by tasks that ask for them?  Else they are sent where they begin.
 bool inTiles(const Configure& message);
 
-// Does this machine compute the same bits as another?  A hash over results of the library functions that the pictures
-// depend on: their last bits differ between processors on which glibc chooses different code.
-std::uint64_t arithmeticFingerprint();
-
 template <class Archive>
 void serialize(Archive& archive, Horizon& h) {
   archive(h.kind, h.value);

@@ -161,11 +161,8 @@ void serialize(Archive& archive, RayTask& m, PacketMemory& before) {
   }
   archive(differs, ray.origin.x, ray.origin.y, ray.origin.z, ray.direction.x, ray.direction.y,
           ray.direction.z, ray.key);
-  if constexpr (Archive::kReading) {
+  if constexpr (Archive::kReading)
     if (differs & kUnknown) return archive.fail();
-    m.to.task = before.to.task;
-    m.to.slot = before.to.slot;
-  }
   if (differs & kFarStep) {
     archive(m.step);
   } else {
@@ -173,10 +170,21 @@ void serialize(Archive& archive, RayTask& m, PacketMemory& before) {
     archive(step);
     m.step = step;
   }
-  if (differs & kTask) archive(m.to.task);
-  if (differs & kSlot) archive(m.to.slot);
-  serializeRecord(archive, m.to.record, before.to.record + 1, static_cast<RecordForm>(differs & 3));
-  before.to = m.to;
+  // One by one: a processor waits when what was written in parts is read as a whole.
+  TaskId task = Archive::kReading ? before.to.task : m.to.task;
+  Slot slot = Archive::kReading ? before.to.slot : m.to.slot;
+  RecordId record = m.to.record;
+  if (differs & kTask) archive(task);
+  if (differs & kSlot) archive(slot);
+  serializeRecord(archive, record, before.to.record + 1, static_cast<RecordForm>(differs & 3));
+  if constexpr (Archive::kReading) {
+    m.to.task = task;
+    m.to.slot = slot;
+    m.to.record = record;
+  }
+  before.to.task = task;
+  before.to.slot = slot;
+  before.to.record = record;
   if (differs & kKind) {
     serializeSparse(archive, Usual{ray.moment.time, 0.0}, Usual{ray.moment.frame, 0}, Usual{ray.depth, 0},
                     Usual{ray.sample, 0}, Usual{ray.contribution, kWhite}, Usual{ray.extinct, 1.0});

@@ -40,7 +40,7 @@ std::uint64_t leastMemory(const HostMemories& memories) {
 
 }  // namespace
 
-std::string applySchedule(HostProgramOptions& o, std::uint32_t hosts, std::uint64_t bytes) {
+std::string applySchedule(HostProgramOptions& o, const MachineSizes& machines, std::uint64_t bytes) {
   HostOptions& host = o.host;
   DemandPolicy& policy = host.policy;
   std::string why;
@@ -49,28 +49,31 @@ std::string applySchedule(HostProgramOptions& o, std::uint32_t hosts, std::uint6
   // Tasks asked for by number get one thread each.
   host.threads = o.render.threads.value_or(o.schedule == "auto" && !tasksSaid ? 0 : 1);
   policy.shadeLocally = !o.shading || *o.shading == "local";
+  // A voxel-trace task for each machine, and so many pyramid-trace tasks.
+  const auto demandDriven = [&](unsigned pyramids) {
+    if (host.wishes.voxels == 0)
+      host.wishes.voxels = std::max(1u, machines.count / std::max(1u, host.wishes.clusters));
+    host.wishes.pyramids = machines.count * std::max(1u, pyramids);
+    policy.shadows = ShadowPolicy::automatic;
+  };
   if (o.schedule == "auto" && tasksSaid) {
     policy.shadows = ShadowPolicy::automatic;
     why = "rays travel, for tasks were asked for by number";
   } else if (o.schedule == "auto" && bytes <= leastMemory(host.wishes.memory) / 4) {
-    host.wishes.clusters = hosts;
+    host.wishes.clusters = machines.count;
     host.wishes.voxels = 1;
     host.wishes.shades = 0;
     why = "each machine holds the whole scene, which is small against its memory, and traces tiles";
   } else if (o.schedule == "auto") {
-    host.wishes.voxels = hosts;
-    host.wishes.pyramids = hosts;
-    policy.shadows = ShadowPolicy::automatic;
+    demandDriven(machines.cores - 1);
     why = "the scene is divided, for it is large against the memory of a machine";
   } else if (o.schedule == "hybrid") {
-    host.wishes.pyramids = 2 * hosts;
-    policy.shadows = ShadowPolicy::automatic;
+    demandDriven(machines.cores - 1);
   } else if (o.schedule == "pipelined") {
-    host.wishes.pyramids = 2 * hosts;
-    policy.shadows = ShadowPolicy::automatic;
+    demandDriven(machines.cores - 1);
     policy.horizon = {Horizon::Kind::cells, 1e9};
   } else if (o.schedule == "demand") {
-    host.wishes.pyramids = 2 * hosts;
+    demandDriven(machines.cores);
     policy.horizon = {Horizon::Kind::cells, 1e9};
     policy.shadows = ShadowPolicy::local;
     policy.secondariesTravel = false;
@@ -100,7 +103,8 @@ void declareHostOptions(CLI::App& app, HostProgramOptions& o) {
       ->group(tasks);
   app.add_flag("--missing-hosts", o.machine.allowMissingHosts, "go on without hosts that do not answer")
       ->group(tasks);
-  app.add_option("--voxels", o.host.wishes.voxels, "voxel-trace tasks (default: two per host)")
+  app.add_option("--voxels", o.host.wishes.voxels,
+                 "voxel-trace tasks (default: two per host, with pyramid-trace tasks one)")
       ->check(wholeNumberFrom(1, 4096))
       ->group(tasks);
   app.add_option("--shades", o.host.wishes.shades, "shade tasks (default: one per four voxel-trace tasks)")
@@ -112,7 +116,7 @@ void declareHostOptions(CLI::App& app, HostProgramOptions& o) {
   app.add_option("--split", o.split, "voxels of equal bytes (balanced), size or predicted cost")
       ->check(CLI::IsMember({"balanced", "equal", "cost"}))
       ->group(tasks);
-  app.add_option("--pyramids", o.pyramids, "pyramid-trace tasks (default: by the schedule)")
+  app.add_option("--pyramids", o.pyramids, "pyramid-trace tasks (default: for the cores that are left)")
       ->check(wholeNumberFrom(0, 4096))
       ->group(tasks);
   app.add_option("--clusters", o.host.wishes.clusters,
@@ -141,7 +145,7 @@ void declareHostOptions(CLI::App& app, HostProgramOptions& o) {
       ->check(CLI::IsMember({"separate", "local"}))
       ->group(sharing);
   app.add_option("--cache", o.cacheMegabytes, "object cache of each task, in MB")
-      ->check(numberFrom(0.001, 1e9))
+      ->transform(numberFrom(0.001, 1e9))
       ->group(sharing);
   app.add_option("--cells", o.host.cells, "cells of the bin-tree, about (default: by the size of the scene)")
       ->check(wholeNumberFrom(1, 1 << 22))
@@ -157,7 +161,7 @@ void declareHostOptions(CLI::App& app, HostProgramOptions& o) {
       ->group(tasks);
   app.add_option("--patience", o.patience,
                  "seconds of silence after which a task that renders counts as hanging (default: 30)")
-      ->check(numberFrom(0.1, 1e6))
+      ->transform(numberFrom(0.1, 1e6))
       ->group(tasks);
   app.add_flag("--plan", o.plan, "render nothing: print which tasks would run where and why")->group(tasks);
   app.add_option("--table", o.tableFile, "write what each task did to this file, as tab-separated values")

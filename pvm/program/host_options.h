@@ -23,8 +23,12 @@ struct HostProgramOptions {
 
 void declareHostOptions(CLI::App& app, HostProgramOptions& options);
 
-// What the named schedule means on so many hosts, whose memory is among the wishes, for a model of so many bytes; what is said in
+struct MachineSizes {
+  std::uint32_t count = 1;
+  unsigned cores = 1;  // of each; taken to be those of the host task's own
+};
+// What the named schedule means on so many machines, whose memory is among the wishes, for a model of so many bytes; what is said in
 // detail counts more.  Answers with the reason where the program chose.
-std::string applySchedule(HostProgramOptions& options, std::uint32_t hosts, std::uint64_t bytes);
+std::string applySchedule(HostProgramOptions& options, const MachineSizes& machines, std::uint64_t bytes);
 
 }  // namespace rayshade

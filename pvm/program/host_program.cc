@@ -14,6 +14,7 @@
 #include "pvm/program/host_options.h"
 #include "pvm/program/task_table.h"
 #include "pvm/schedule/plan.h"
+#include "rayshade/base/crew.h"
 #include "rayshade/base/interruption.h"
 #include "rayshade/base/memory.h"
 #include "rayshade/program/command_line.h"
@@ -103,7 +104,8 @@ int run(HostProgramOptions& options, Need& need) {
   if (options.plan) {
     const std::vector<HostInfo> hosts = plannedHosts(lines);
     options.host.wishes.memory = memoriesOf(lines, hosts[0].name);
-    const std::string why = applySchedule(options, static_cast<std::uint32_t>(hosts.size()), survey.bytes);
+    const std::string why =
+        applySchedule(options, {static_cast<std::uint32_t>(hosts.size()), coreCount()}, survey.bytes);
     if (!why.empty()) std::printf("schedule        auto: %s\n", why.c_str());
     std::fputs(describePlan(hosts, options.host, std::move(survey), {view, head.picture}, head.settings, work)
                    .c_str(),
@@ -133,7 +135,7 @@ int run(HostProgramOptions& options, Need& need) {
   const std::vector<HostInfo> present = link.hosts();
   const std::size_t hosts = present.size();
   options.host.wishes.memory = memoriesOf(lines, present[0].name);
-  applySchedule(options, static_cast<std::uint32_t>(hosts), survey.bytes);
+  applySchedule(options, {static_cast<std::uint32_t>(hosts), link.cores()}, survey.bytes);
   options.host.wishes = neededTasks(work, options.host, hosts).wishes;
   HostTask host(
       link, [&](SceneSink& sink) { parseScene(again, sink); }, std::move(survey), head.settings,

@@ -24,7 +24,8 @@ constexpr double kCopies = 1.2;
 std::vector<double> sharesOf(double bytes, const std::vector<double>& rooms) {
   std::vector<std::size_t> order(rooms.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return rooms[a] < rooms[b]; });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return rooms[a] < rooms[b]; });
   std::vector<double> shares(rooms.size());
   double left = bytes;
   for (std::size_t i = 0; i < order.size(); ++i) {

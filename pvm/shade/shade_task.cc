@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pvm/shade/shade_task.h"
 
+#include "rayshade/base/arithmetic.h"
+
 namespace rayshade {
 
 void ShadeTask::on(TaskId from, Configure message) {

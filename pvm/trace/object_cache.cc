@@ -37,6 +37,15 @@ RegionRef ObjectCache::find(CellId cell, std::size_t rays) {
   return {&c.model, &c.region};
 }
 
+std::optional<std::vector<Item>> ObjectCache::itemsOf(CellId cell) const {
+  const auto found = cells_.find(static_cast<std::uint32_t>(cell));
+  if (found == cells_.end()) return std::nullopt;
+  const SceneStore& store = found->second->model.store();
+  Extract extract(store);
+  for (const ObjectIndex object : store.objectsOf(kWorld)) extract.add(object);
+  return std::move(extract.items);
+}
+
 std::size_t ObjectCache::insert(CellId cell, std::vector<Item>&& items, const Exposure& exposure,
                                 std::size_t wireBytes) {
   const auto key = static_cast<std::uint32_t>(cell);

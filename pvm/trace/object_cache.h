@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <list>
 #include <memory>
+#include <optional>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -32,6 +33,9 @@ class ObjectCache {
   bool contains(CellId cell) const {
     return cells_.contains(static_cast<std::uint32_t>(cell)) || isJoined(cell);
   }
+
+  // The objects of a cell with all that they refer to, for another cache; nothing if it is not here, or joined.
+  std::optional<std::vector<Item>> itemsOf(CellId cell) const;
 
   // Takes a cell in, after room was made for it.  How many bytes it takes here.
   std::size_t insert(CellId cell, std::vector<Item>&& items, const Exposure& exposure, std::size_t wireBytes);

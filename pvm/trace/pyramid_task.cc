@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "rayshade/base/arithmetic.h"
 #include "rayshade/space/walk.h"
 
 namespace rayshade {

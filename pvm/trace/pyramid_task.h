@@ -17,8 +17,8 @@ namespace rayshade {
 
 class PyramidTask {
  public:
-  using Accepted = TypeList<Configure, Finish, Ping, Weights, TileWork, PrimaryRays, CellItems, Answer,
-                            ImagePlace, ImagePiece>;
+  using Accepted = TypeList<Configure, Finish, Ping, Weights, TileWork, PrimaryRays, CellWanted, CellItems,
+                            Answer, ImagePlace, ImagePiece>;
 
   explicit PyramidTask(Link& link) : context_(link), unit_(context_, nullptr) {}
 
@@ -36,6 +36,7 @@ class PyramidTask {
   void on(TaskId from, TileWork message);
   void on(TaskId from, PrimaryRays message);
   void on(TaskId from, const Answer& message);
+  void on(TaskId, const CellWanted& message) { unit_.giveOn(message); }
   void on(TaskId from, CellItems message);
   void on(TaskId from, const ImagePlace& message) { unit_.images.take(from, message, context_); }
   void on(TaskId from, const ImagePiece& message) { unit_.images.take(from, message, context_); }

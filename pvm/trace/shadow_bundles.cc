@@ -40,9 +40,10 @@ void ShadowBundles::sendOn(std::span<PendingShadow> pending, const ShadowHead& h
 
 void ShadowBundles::park(Bundle&& bundle, CellId missing, const LightSource* light) {
   // A light pyramid asks for all that it may need at once, if there is room; cells of held voxels are no use to it.
-  if (const AreaLight* area = light == nullptr ? nullptr : std::get_if<AreaLight>(&light->kind)) {
-    const Vec3 apex = bundle.rays.front().shadow.ray.origin;
-    std::vector<CellId> cells = clipList(at_.tree, pyramidTo(apex, area->corner, area->edgeU, area->edgeV));
+  const Vec3 apex = bundle.rays.front().shadow.ray.origin;
+  if (const auto extent = light == nullptr ? std::nullopt : extentOf(*light, apex)) {
+    std::vector<CellId> cells =
+        clipList(at_.tree, pyramidTo(apex, extent->corner, extent->edgeU, extent->edgeV));
     std::erase_if(cells, [&](CellId cell) { return space_.blocks().held(voxelOfCell(at_.tree, cell)); });
     cells.resize(cells_.worthAsking(cells, bundle.rays.size(), at_.policy.shadows == ShadowPolicy::local,
                                     static_cast<double>(at_.policy.cacheBytes)));

@@ -34,6 +34,21 @@ void TraceUnit::sendTiles(TaskId host) {
   }
 }
 
+void TraceUnit::giveOn(const CellWanted& message) {
+  if (static_cast<std::size_t>(message.cell) >= cellCount(at.tree) ||
+      !isTracer(at.directory, message.asker)) {
+    ++context.outbox.traffic.refused;
+    return;
+  }
+  std::optional<std::vector<Item>> items = cache.itemsOf(message.cell);
+  if (items) {
+    ++cellsServed;
+    context.outbox.post(message.asker, CellItems{message.cell, std::move(*items)});
+  } else {
+    context.outbox.post(at.ownerOf(voxelOfCell(at.tree, message.cell)), message);
+  }
+}
+
 void TraceUnit::setWeights(const Weights& message) {
   if (message.epoch == context.epoch && message.shadeWeights.size() == at.directory.shadeTasks.size())
     at.directory.shadeWeights = message.shadeWeights;
@@ -44,6 +59,7 @@ void TraceUnit::addTo(Report& report) const {
   report.combined = replies.combined();
   report.cache = cache.counts();
   report.shadowCache = space.shadowLookups();
+  report.cellsServed = cellsServed;
   report.pyramids = pyramids;
   report.pyramidRays = pyramidRays;
 }

@@ -58,6 +58,10 @@ struct TraceUnit {
   // Sends what has become of tiles to the host.
   void sendTiles(TaskId host);
 
+  // Gives a cell of another task, which is in the cache, to whom that task says; if it is not here any more the question goes back.
+  // What its owner would not say is refused and counted.
+  void giveOn(const CellWanted& message);
+
   // What this unit has counted.
   void addTo(Report& report) const;
 
@@ -75,7 +79,7 @@ struct TraceUnit {
   ShadowBundles shadows;
   HitShader shader;
   Tracer tracer;
-  std::uint64_t pyramids = 0, pyramidRays = 0;
+  std::uint64_t pyramids = 0, pyramidRays = 0, cellsServed = 0;
 
  private:
   template <class GoesOn>

@@ -40,9 +40,7 @@ void VoxelShare::prepare(const Exposure& exposure, const BinTree& tree, std::spa
 }
 
 // Which objects lie in which cell is found out when the first one is asked for.
-std::optional<std::vector<Item>> VoxelShare::itemsOf(CellId cell, const BinTree& tree) {
-  if (held_.size() != voxelCount(tree) || !held_[static_cast<std::size_t>(voxelOfCell(tree, cell))])
-    return std::nullopt;
+std::vector<Item> VoxelShare::itemsOf(CellId cell, const BinTree& tree) {
   if (cellObjects_.empty()) {
     cellObjects_.resize(cellCount(tree));
     std::vector<CellId> cells;

@@ -24,8 +24,11 @@ class VoxelShare {
   const Model& model() const { return *model_; }
   // All of it, each object once, whatever voxels it lies in.
   const Region& region() const { return region_; }
-  // The objects of a cell of a held voxel with all that they refer to; nothing if it is not held.
-  std::optional<std::vector<Item>> itemsOf(CellId cell, const BinTree& tree);
+  bool holds(CellId cell, const BinTree& tree) const {
+    return held_.size() == voxelCount(tree) && held_[static_cast<std::size_t>(voxelOfCell(tree, cell))];
+  }
+  // The objects of a cell that it holds, with all that they refer to.
+  std::vector<Item> itemsOf(CellId cell, const BinTree& tree);
 
   std::size_t objects() const { return model_->store().objectsOf(kWorld).size(); }
   std::uint64_t owned() const {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pvm/trace/voxel_task.h"
 
+#include "rayshade/base/arithmetic.h"
+
 namespace rayshade {
 
 // Rays of samples that nobody needs any more may still be on their way: until the next Configure there is nothing here
@@ -44,6 +46,7 @@ void VoxelTask::on(TaskId from, Configure message) {
   const unsigned share = std::max(1u, context_.link.cores() / tracersBeside(directory, number));
   const unsigned threads = message.threads > 0 ? std::min(message.threads, share) : share;
   unit_.begin(from, std::move(message), number / perCluster, number);
+  holders_.begin(unit_.at.directory, context_.link.self());
   share_.prepare(unit_.at.exposure, unit_.at.tree, unit_.at.directory.voxels, number % perCluster);
   context_.outbox.post(from, Ready{context_.epoch, arithmeticFingerprint(), share_.objects(), share_.owned(),
                                    share_.leftOut()});
@@ -52,17 +55,25 @@ void VoxelTask::on(TaskId from, Configure message) {
 
 void VoxelTask::on(TaskId, Weights message) { unit_.setWeights(message); }
 
-// A cell for somebody else's cache.
+// A cell for somebody else's cache: from here, or from somebody who got it before.
 void VoxelTask::on(TaskId from, CellWanted message) {
-  std::optional<std::vector<Item>> items;
-  if (static_cast<std::size_t>(message.cell) < cellCount(unit_.at.tree))
-    items = share_.itemsOf(message.cell, unit_.at.tree);
-  if (!items) {
-    ++context_.outbox.traffic.refused;
-    return;
+  const bool known = static_cast<std::size_t>(message.cell) < cellCount(unit_.at.tree);
+  if (known && !share_.holds(message.cell, unit_.at.tree)) return unit_.giveOn(message);
+  const bool cameBack = message.asker != kNobody;
+  if (cameBack) {
+    holders_.forget(message.cell, from);
+  } else {
+    message.asker = from;
   }
-  ++cellsServed_;
-  context_.outbox.post(from, CellItems{message.cell, std::move(*items)});
+  const TaskId giver = known ? holders_.choose(message.cell, message.asker) : kNobody;
+  if (giver == kNobody) {
+    ++context_.outbox.traffic.refused;
+  } else if (giver != context_.link.self() && !cameBack) {
+    context_.outbox.post(giver, message);
+  } else {
+    ++unit_.cellsServed;
+    context_.outbox.post(message.asker, CellItems{message.cell, share_.itemsOf(message.cell, unit_.at.tree)});
+  }
 }
 
 void VoxelTask::on(TaskId, CellItems message) {
@@ -82,7 +93,6 @@ void VoxelTask::on(TaskId from, Finish) {
   report.combined += jobs_.counts().hits;
   report.pyramids += jobs_.pyramids();
   report.pyramidRays += jobs_.pyramidRays();
-  report.cellsServed = cellsServed_;
   report.modelBytes = share_.bytes();
   context_.outbox.post(from, report);
   context_.finished = true;

@@ -7,6 +7,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "pvm/trace/cell_holders.h"
 #include "pvm/trace/ray_queue.h"
 #include "pvm/trace/tile_jobs.h"
 #include "pvm/trace/trace_unit.h"
@@ -69,8 +70,8 @@ class VoxelTask {
   SampleQueue samples_;                           // their rays are made when there is nothing deeper to do
   RayQueue rays_;
   ShadowQueue shadows_;
-  RayBundle bundle_;  // being traced
-  std::uint64_t cellsServed_ = 0;
+  RayBundle bundle_;     // being traced
+  CellHolders holders_;  // of cells of this task
 };
 
 }  // namespace rayshade

@@ -51,9 +51,12 @@ class Bvh {
   Bvh() = default;
   // `items` in any space, at most kMostItems; the caller has padded them.
   explicit Bvh(std::span<const Bounds> items) : tree_(buildBvh(items)) {}
-  Bvh(std::size_t items, const BoundsOf& boundsOf) : tree_(buildBvh(items, boundsOf)) {}
+  Bvh(std::size_t items, const BoundsOf& boundsOf, unsigned threads = 1)
+      : tree_(buildBvh(items, boundsOf, threads)) {}
 
   std::span<const std::uint32_t> order() const { return tree_.order; }
+  // So many of the order, from its beginning, may be met.
+  std::size_t held() const { return tree_.inTree + tree_.unbounded; }
   // The order for him who lays out his items; it is not kept.
   std::vector<std::uint32_t> takeOrder() { return std::exchange(tree_.order, {}); }
   std::size_t bytes() const {

@@ -14,8 +14,9 @@ namespace rayshade {
 inline constexpr std::size_t kMostItems = std::size_t{1} << kFirstBits;
 BvhTree buildBvh(std::span<const Bounds> items);
 
-// The same when the bounds are not lying anywhere: each is asked for twice, which is less than to keep them.
+// The same when the bounds are not lying anywhere: each is asked for twice, which is less than to keep them.  The tree is the
+// same for any number of threads.
 using BoundsOf = std::function<Bounds(std::uint32_t item)>;
-BvhTree buildBvh(std::size_t items, const BoundsOf& boundsOf);
+BvhTree buildBvh(std::size_t items, const BoundsOf& boundsOf, unsigned threads = 1);
 
 }  // namespace rayshade

@@ -15,13 +15,13 @@ struct BoxRays {
   static constexpr std::size_t kGroup = 8, kGroups = kBundleSize / kGroup;
   Float8 nearOrigin[3][kGroups], farOrigin[3][kGroups], nearInverse[3][kGroups], farInverse[3][kGroups];
   Float8 limit[kGroups];
-  float direction[3][kBundleSize];
-  double scale[kBundleSize], start[kBundleSize];
+  Float8 direction[3][kGroups];
+  Double8 scale[kGroups], start[kGroups];
   RaySet negative[3];  // direction along an axis
 
   void setLimit(std::size_t i, double tMax) {
-    limit[i / kGroup][i % kGroup] =
-        static_cast<float>((tMax * scale[i] - start[i]) * (1 + margins::kToFloat));
+    limit[i / kGroup][i % kGroup] = static_cast<float>(
+        (tMax * scale[i / kGroup][i % kGroup] - start[i / kGroup][i % kGroup]) * (1 + margins::kToFloat));
   }
   BoxRay one(std::size_t i, std::uint32_t octant) const {
     const std::size_t group = i / kGroup, at = i % kGroup;
@@ -33,9 +33,9 @@ struct BoxRays {
       ray.farInverse[axis] = splat(farInverse[axis][group][at]);
     }
     ray.limit = splat(limit[group][at]);
-    ray.direction = Float4{direction[0][i], direction[1][i], direction[2][i], 0};
-    ray.scale = scale[i];
-    ray.start = start[i];
+    ray.direction = Float4{direction[0][group][at], direction[1][group][at], direction[2][group][at], 0};
+    ray.scale = scale[group][at];
+    ray.start = start[group][at];
     ray.octant = octant;
     return ray;
   }
@@ -46,6 +46,19 @@ struct BoxRays {
   const auto wide = reinterpret_cast<const Long4&>(eight);
   const auto either = static_cast<std::uint64_t>(wide[0] | wide[1] | wide[2] | wide[3]);
   return static_cast<std::uint32_t>(either | either >> 32);
+}
+
+// A number of each of eight queries.
+template <class Query, class Number>
+[[gnu::always_inline]] inline Double8 ofEach(const Query* const (&of)[8], Number&& number) {
+  return Double8{number(*of[0]), number(*of[1]), number(*of[2]), number(*of[3]),
+                 number(*of[4]), number(*of[5]), number(*of[6]), number(*of[7])};
+}
+
+// The rays of a group for which a comparison holds.
+[[gnu::always_inline]] inline RaySet raysWhere(const Long8& holds, std::size_t group) {
+  const Int8 bits = Int8{1, 2, 4, 8, 16, 32, 64, 128} << static_cast<std::int32_t>(8 * group);
+  return anyBits(__builtin_convertvector(holds, Int8) & bits);
 }
 
 // Rays that enter, and those that must be tested against everything.
@@ -62,23 +75,25 @@ template <class Query>
   rays.negative[0] = rays.negative[1] = rays.negative[2] = 0;
   for (std::size_t group = 0; group * kGroup < bundle.size(); ++group) {
     const std::size_t first = group * kGroup, count = std::min(kGroup, bundle.size() - first);
-    Double8 origin[3], direction[3], tMin, tMax;
-    for (std::size_t i = 0; i < kGroup; ++i) {
-      const Query& query = bundle[first + std::min(i, count - 1)];
-      origin[0][i] = query.ray.origin.x;
-      origin[1][i] = query.ray.origin.y;
-      origin[2][i] = query.ray.origin.z;
-      direction[0][i] = query.ray.direction.x;
-      direction[1][i] = query.ray.direction.y;
-      direction[2][i] = query.ray.direction.z;
-      tMin[i] = query.tMin;
-      tMax[i] = query.tMax;
-    }
+    const Query* of[kGroup];
+    for (std::size_t i = 0; i < kGroup; ++i) of[i] = &bundle[first + std::min(i, count - 1)];
+    const Double8 origin[3] = {ofEach(of, [](const Query& q) RAYSHADE_INLINE { return q.ray.origin.x; }),
+                               ofEach(of, [](const Query& q) RAYSHADE_INLINE { return q.ray.origin.y; }),
+                               ofEach(of, [](const Query& q) RAYSHADE_INLINE { return q.ray.origin.z; })};
+    const Double8 direction[3] = {
+        ofEach(of, [](const Query& q) RAYSHADE_INLINE { return q.ray.direction.x; }),
+        ofEach(of, [](const Query& q) RAYSHADE_INLINE { return q.ray.direction.y; }),
+        ofEach(of, [](const Query& q) RAYSHADE_INLINE { return q.ray.direction.z; })};
+    const Double8 tMin = ofEach(of, [](const Query&q) RAYSHADE_INLINE { return q.tMin; }),
+                  tMax = ofEach(of, [](const Query&q) RAYSHADE_INLINE { return q.tMax; });
     const auto magnitude = [](const Double8& x) __attribute__((always_inline)) { return x < 0 ? -x : x; };
     const Double8 lengths[3] = {magnitude(direction[0]), magnitude(direction[1]), magnitude(direction[2])};
     Double8 reach = lengths[0] > lengths[1] ? lengths[0] : lengths[1];
     reach = reach > lengths[2] ? reach : lengths[2];
-    const Double8 stretch = reinterpret_cast<Double8>(reinterpret_cast<Long8>(reach) & 0x7ff0000000000000);
+    // A power of two, and the inverse of it: 0x7fe... - exponent is that of the inverse.
+    const Long8 exponent = reinterpret_cast<Long8>(reach) & 0x7ff0000000000000;
+    const auto stretch = reinterpret_cast<Double8>(exponent);
+    const auto perStretch = reinterpret_cast<Double8>(0x7fe0000000000000 - exponent);
     const Double8 scale = stretch * tree.scale;
 
     Double8 start = tMin * scale, end = tMax * scale;
@@ -89,7 +104,7 @@ template <class Query>
       place[axis] = (origin[axis] - tree.centre[axis]) * tree.scale;
       away[axis] = magnitude(place[axis]);
       ordinary &= (away[axis] <= margins::kFarthest) & (lengths[axis] <= margins::kLargest);
-      d[axis] = direction[axis] / stretch;
+      d[axis] = direction[axis] * perStretch;
       exactly[axis] = 1.0 / d[axis];
       const Double8 slack = margins::kSlack * (1.0 + away[axis]);
       const Double8 toLow = (tree.box.low[axis] - slack - place[axis]) * exactly[axis];
@@ -99,6 +114,17 @@ template <class Query>
       end = far < end ? far : end;
     }
     const Long8 inside = ordinary & (start <= end);
+    const RaySet present = static_cast<RaySet>(((std::uint64_t{1} << count) - 1) << first);
+    forEachRay(~raysWhere(ordinary, group) & present, [&](std::size_t i) {
+      const Query& query = bundle[i];
+      BoxRay alone;
+      const Entry entry = enter(tree, query.ray.origin, query.ray.direction, query.tMin, query.tMax, alone);
+      // A ray that stands still is no ordinary one; to look at all is right for any.
+      if (entry != Entry::kMissed) entered.everything |= RaySet{1} << i;
+    });
+    const RaySet entering = raysWhere(inside, group) & present;
+    if (entering == 0) continue;  // most bundles that miss everything
+    entered.inside |= entering;
     start = start < -margins::kLargest  ? Double8{} - margins::kLargest
             : start > margins::kLargest ? Double8{} + margins::kLargest
                                         : start;
@@ -119,28 +145,11 @@ template <class Query>
       rays.farOrigin[axis][group] = at - forward;
       rays.nearInverse[axis][group] = narrow * (1 - margins::kSlab);
       rays.farInverse[axis][group] = narrow * (1 + margins::kSlab);
-      const Float8 along = __builtin_convertvector(d[axis], Float8);
-      for (std::size_t i = 0; i < kGroup; ++i) {
-        rays.direction[axis][first + i] = along[i];
-        rays.negative[axis] |= static_cast<RaySet>(sign[i] & 1) << (first + i);
-      }
+      rays.direction[axis][group] = __builtin_convertvector(d[axis], Float8);
+      rays.negative[axis] |= raysWhere(sign, group);
     }
-    for (std::size_t i = 0; i < kGroup; ++i) {
-      rays.scale[first + i] = scale[i];
-      rays.start[first + i] = start[i];
-    }
-    for (std::size_t i = 0; i < count; ++i) {
-      const RaySet bit = RaySet{1} << (first + i);
-      if (inside[i] != 0) {
-        entered.inside |= bit;
-      } else if (ordinary[i] == 0) {
-        const Query& query = bundle[first + i];
-        BoxRay alone;
-        const Entry entry = enter(tree, query.ray.origin, query.ray.direction, query.tMin, query.tMax, alone);
-        // A ray that stands still is no ordinary one; to look at all is right for any.
-        if (entry != Entry::kMissed) entered.everything |= bit;
-      }
-    }
+    rays.scale[group] = scale;
+    rays.start[group] = start;
   }
   return entered;
 }
@@ -229,8 +238,10 @@ template <bool kSorted, class Query, class Leaf>
       Float4 depth{};
       if constexpr (kSorted) {
         const auto leader = static_cast<std::size_t>(std::countr_zero(here.rays));
-        depth = nearX * splat(rays.direction[0][leader]) + nearY * splat(rays.direction[1][leader]) +
-                nearZ * splat(rays.direction[2][leader]);
+        const auto along = [&](int axis) RAYSHADE_INLINE {
+          return splat(rays.direction[axis][leader / 8][leader % 8]);
+        };
+        depth = nearX * along(0) + nearY * along(1) + nearZ * along(2);
       }
       const int base = size;
       for (int child = 0; child < 4; ++child) {

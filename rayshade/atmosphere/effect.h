@@ -8,13 +8,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cmath>
 #include <concepts>
 #include <optional>
 #include <string_view>
 
 #include "rayshade/base/archive.h"
 #include "rayshade/base/color.h"
+#include "rayshade/base/elementary.h"
 #include "rayshade/base/vec.h"
 #include "rayshade/shapes/arguments.h"
 
@@ -43,7 +43,7 @@ inline constexpr double kFarAway = 1e14;
 inline double halving(double distance, double half) {
   if (half < kNegligible) return 0;
   const double exponent = -0.69314718 * distance / half;
-  return exponent < -10 ? 0 : std::exp(exponent);
+  return exponent < -10 ? 0 : elementary::exp(exponent);
 }
 
 // Mixes `seen` with the colour of the air by what the air lets through of each channel.

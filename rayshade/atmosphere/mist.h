@@ -7,6 +7,7 @@
 #pragma once
 
 #include "rayshade/atmosphere/effect.h"
+#include "rayshade/base/elementary.h"
 
 namespace rayshade {
 
@@ -31,8 +32,9 @@ struct Mist {
     const double s = 1 / scale;
     const double z0 = path.start.z, z1 = path.end.z;
     const double rise = s * (z1 - z0);
-    const double above = std::exp(zero - s * z1);
-    const double density = std::abs(rise) > kNegligible ? (std::exp(zero - s * z0) - above) / rise : above;
+    const double above = elementary::exp(zero - s * z1);
+    const double density =
+        std::abs(rise) > kNegligible ? (elementary::exp(zero - s * z0) - above) / rise : above;
     const double thickness = path.distance * density;
     return std::isnan(thickness) ? color : veil(seen, color, half, thickness);
   }

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "rayshade/base/elementary.h"
+
 namespace rayshade {
 namespace {
 
@@ -105,34 +107,34 @@ double evaluate(const Expression& expression, const Moment& moment) {
         stack.push_back(remainder(a, b));
         break;
       case Operation::power:
-        stack.push_back(std::pow(a, b));
+        stack.push_back(elementary::pow(a, b));
         break;
       case Operation::negate:
         stack.push_back(-a);
         break;
       case Operation::sine:
-        stack.push_back(std::sin(a));
+        stack.push_back(elementary::sin(a));
         break;
       case Operation::cosine:
-        stack.push_back(std::cos(a));
+        stack.push_back(elementary::cos(a));
         break;
       case Operation::tangent:
-        stack.push_back(std::tan(a));
+        stack.push_back(elementary::tan(a));
         break;
       case Operation::arcsine:
-        stack.push_back(std::asin(a));
+        stack.push_back(elementary::asin(a));
         break;
       case Operation::arccosine:
-        stack.push_back(std::acos(a));
+        stack.push_back(elementary::acos(a));
         break;
       case Operation::arctangent:
-        stack.push_back(std::atan(a));
+        stack.push_back(elementary::atan(a));
         break;
       case Operation::squareRoot:
         stack.push_back(std::sqrt(a));
         break;
       case Operation::hypotenuse:
-        stack.push_back(std::hypot(a, b));
+        stack.push_back(elementary::hypot(a, b));
         break;
       case Operation::linear:
         break;

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "rayshade/base/elementary.h"
+
 namespace rayshade {
 namespace {
 
@@ -129,7 +131,7 @@ double absoluteChaos(Vec3 p, int octaves) {
 }
 
 Spectrum fractionalSpectrum(double hurst, double lambda, int octaves) {
-  return {hurst, lambda, std::pow(lambda, -0.5 * (1 + 2 * hurst)), octaves};
+  return {hurst, lambda, elementary::pow(lambda, -0.5 * (1 + 2 * hurst)), octaves};
 }
 
 double fractionalMotion(Vec3 p, const Spectrum& spectrum) {

@@ -3,6 +3,8 @@
 
 #include <numbers>
 
+#include "rayshade/base/elementary.h"
+
 namespace rayshade {
 namespace {
 
@@ -55,7 +57,7 @@ Affine rotation(Vec3 axis, double degrees) {
   const Vec3 n = normalize(axis);
   if (n == Vec3{}) return {};
   const double angle = degrees * std::numbers::pi / 180;
-  const Matrix m = rotationMatrix(n, std::cos(angle), std::sin(angle));
+  const Matrix m = rotationMatrix(n, elementary::cos(angle), elementary::sin(angle));
   return {m, transposed(m)};
 }
 
@@ -79,7 +81,7 @@ std::optional<Affine> linearMap(const Matrix& m) {
 // scale(radius, radius, height), then the shortest rotation that takes +z to the axis, then translate(base).
 Affine alongAxis(Vec3 base, Vec3 axis, double radius, double height) {
   const Vec3 a = normalize(axis);
-  const double sine = std::hypot(a.x, a.y);
+  const double sine = elementary::hypot(a.x, a.y);
   const Vec3 turn = sine > 0 ? Vec3{-a.y / sine, a.x / sine, 0} : Vec3{1, 0, 0};
   const Matrix m = rotationMatrix(turn, a.z, sine);
   const Affine rotate{m, transposed(m)};

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "rayshade/base/elementary.h"
+
 namespace rayshade {
 namespace {
 
@@ -56,7 +58,7 @@ Triple shownOf(const Triple& opponent) {
 Triple labOf(const Triple& rgb) {
   const auto root = [](double t) {
     constexpr double kKnee = 6.0 / 29;
-    return t > kKnee * kKnee * kKnee ? std::cbrt(t) : t / (3 * kKnee * kKnee) + 4.0 / 29;
+    return t > kKnee * kKnee * kKnee ? elementary::cbrt(t) : t / (3 * kKnee * kKnee) + 4.0 / 29;
   };
   const Triple xyz = xyzOf(rgb);
   const double x = root(xyz[0]), y = root(xyz[1]), z = root(xyz[2]);
@@ -66,12 +68,12 @@ Triple labOf(const Triple& rgb) {
 
 // HyAB: city-block between lightness and the plane of a and b.
 double hyab(const Triple& a, const Triple& b) {
-  return std::abs(a[0] - b[0]) + std::hypot(a[1] - b[1], a[2] - b[2]);
+  return std::abs(a[0] - b[0]) + elementary::hypot(a[1] - b[1], a[2] - b[2]);
 }
 
 double colorError(const Triple& a, const Triple& b) {
-  const double most = std::pow(hyab(labOf({0, 1, 0}), labOf({0, 0, 1})), kColorExponent);
-  const double difference = std::pow(hyab(a, b), kColorExponent), knee = kBreakFrom * most;
+  const double most = elementary::pow(hyab(labOf({0, 1, 0}), labOf({0, 0, 1})), kColorExponent);
+  const double difference = elementary::pow(hyab(a, b), kColorExponent), knee = kBreakFrom * most;
   if (difference < knee) return kBreakTo / knee * difference;
   return kBreakTo + (difference - knee) / (most - knee) * (1 - kBreakTo);
 }
@@ -156,7 +158,7 @@ Plane blurred(const Plane& plane, const Sensitivity& sensitivity, double pixelsP
     if (a == 0) continue;
     const Kernel kernel = kernelOf(radius, [&, b = b](int i) {
       const double degrees = i / pixelsPerDegree;
-      return std::exp(-kPi * kPi * degrees * degrees / b);
+      return elementary::exp(-kPi * kPi * degrees * degrees / b);
     });
     const double factor = a * std::sqrt(kPi / b), weight = sumOf(kernel);
     const Plane part = filtered(plane, scaled(kernel, factor), kernel);
@@ -175,7 +177,7 @@ struct Features {
 Features featuresOf(const Plane& lightness, double pixelsPerDegree) {
   const double deviation = 0.5 * kFeatureWidth * pixelsPerDegree;
   const int radius = static_cast<int>(std::ceil(3 * deviation));
-  const auto gauss = [&](int i) { return std::exp(-(i * i) / (2 * deviation * deviation)); };
+  const auto gauss = [&](int i) { return elementary::exp(-(i * i) / (2 * deviation * deviation)); };
   const Kernel across = balanced(kernelOf(radius, gauss));
   const Kernel edge = balanced(kernelOf(radius, [&](int i) { return -i * gauss(i); }));
   const Kernel point =
@@ -183,7 +185,8 @@ Features featuresOf(const Plane& lightness, double pixelsPerDegree) {
   const auto strength = [&](const Kernel& kernel) {
     const Plane x = filtered(lightness, kernel, across), y = filtered(lightness, across, kernel);
     std::vector<double> lengths;
-    for (std::size_t i = 0; i < x.values.size(); ++i) lengths.push_back(std::hypot(x.values[i], y.values[i]));
+    for (std::size_t i = 0; i < x.values.size(); ++i)
+      lengths.push_back(elementary::hypot(x.values[i], y.values[i]));
     return lengths;
   };
   return {strength(edge), strength(point)};
@@ -225,8 +228,8 @@ std::vector<double> flipErrors(const Picture& reference, const Picture& picture,
   for (std::size_t i = 0; i < a.colors.size(); ++i) {
     const double edges = std::abs(a.features.edges[i] - b.features.edges[i]);
     const double points = std::abs(a.features.points[i] - b.features.points[i]);
-    const double feature = std::pow(std::max(edges, points) / std::numbers::sqrt2, kFeatureExponent);
-    errors.push_back(std::pow(colorError(a.colors[i], b.colors[i]), 1 - feature));
+    const double feature = elementary::pow(std::max(edges, points) / std::numbers::sqrt2, kFeatureExponent);
+    errors.push_back(elementary::pow(colorError(a.colors[i], b.colors[i]), 1 - feature));
   }
   return errors;
 }

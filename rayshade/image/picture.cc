@@ -4,6 +4,8 @@
 #include <bit>
 #include <cmath>
 
+#include "rayshade/base/elementary.h"
+
 namespace rayshade {
 
 void appendRow(Picture& picture, std::span<const Color> row) {
@@ -24,7 +26,7 @@ std::uint64_t checksum(const Picture& picture) {
 
 std::uint32_t levelOf(float light, double gamma, std::uint32_t most) {
   if (!(light >= 0)) return 0;
-  const double shown = gamma == 1 ? light : std::pow(static_cast<double>(light), 1 / gamma);
+  const double shown = gamma == 1 ? light : elementary::pow(static_cast<double>(light), 1 / gamma);
   if (shown > 1) return most;
   return shown > 0 ? static_cast<std::uint32_t>(most * shown) : 0;
 }

@@ -29,7 +29,9 @@ class Testers {
   template <class S, class Use>
   void testShape(std::uint32_t body, RaySet rays, Use&& use) {
     const S& shape = model_.store().shapes<S>()[body];
-    forEachRay(rays, [&](std::size_t i) { use(i, shape.intersect(segments_[i].ray, segments_[i].tMin)); });
+    forEachRay(rays, [&](std::size_t i) {
+      use(i, firstWithin(shape, segments_[i].ray, segments_[i].tMin, segments_[i].tMax));
+    });
   }
 
   template <class Use>

@@ -64,12 +64,14 @@ Bounds Model::placedBoundsOf(const Bounds& inside, NodeIndex index) const {
       inside, node.moves, [&](const Moment& moment) { return mapAt(store_, index, moment); }, exposure_);
 }
 
-Region Model::regionOf(std::vector<ObjectIndex> objects) const {
-  std::erase_if(objects, [&](ObjectIndex object) { return boundsOf(object).empty(); });
+Region Model::regionOf(std::vector<ObjectIndex> objects, unsigned threads) const {
   Region region;
-  region.bvh = Bvh(objects.size(), [&](std::uint32_t item) { return boundsOf(objects[item]); });
-  region.objects.reserve(objects.size());
-  for (std::uint32_t item : region.bvh.takeOrder()) region.objects.push_back(target(objects[item]));
+  region.bvh = Bvh(
+      objects.size(), [&](std::uint32_t item) { return boundsOf(objects[item]); }, threads);
+  const std::vector<std::uint32_t> order = region.bvh.takeOrder();
+  region.objects.reserve(region.bvh.held());  // the others are nowhere
+  for (const std::uint32_t item : std::span(order).first(region.bvh.held()))
+    region.objects.push_back(target(objects[item]));
   return region;
 }
 

@@ -56,7 +56,7 @@ class Model {
   Bounds boundsOf(ObjectIndex object) const;  // in the space of its container, padded
   // The extent of something inside of a node in the space of the node's container, padded.
   Bounds placedBoundsOf(const Bounds& inside, NodeIndex node) const;
-  Region regionOf(std::vector<ObjectIndex> objects) const;
+  Region regionOf(std::vector<ObjectIndex> objects, unsigned threads = 1) const;
   Target target(ObjectIndex object) const;
   const Region& definition(const Instance& instance) const {
     return definitions_[slot(instance.definition)].region;

@@ -8,8 +8,8 @@ namespace rayshade {
 namespace {
 
 template <class S>
-double intersectShape(const S& shape, const LocalRay& ray, double tMin) {
-  if (ray.scale == 1) return shape.intersect(ray, tMin);
+double intersectShape(const S& shape, const LocalRay& ray, double tMin, double tMax) {
+  if (ray.scale == 1) return firstWithin(shape, ray, tMin, tMax);
   // What counts is t > tMin in world units: two roots may round to one there, and one root to two.
   const double from = tMin * ray.scale;
   double local = shape.intersect(ray, from - std::abs(from) * 0x1p-50);
@@ -41,7 +41,7 @@ double RayIntersector::intersectAny(const Target& target, double tMin, double tM
   double t = kNoHit;
   [&]<class... S>(TypeList<S...>) {
     (void)((target.kind == kKindOf<S>
-                ? (t = intersectShape(store.shapes<S>()[target.body], local, tMin), true)
+                ? (t = intersectShape(store.shapes<S>()[target.body], local, tMin, tMax), true)
                 : false) ||
            ...);
   }(AllShapes{});

@@ -32,6 +32,15 @@ inline constexpr BodyKind kKindOf = [] {
   return BodyKind{found};
 }();
 
+// The first t > tMin at which the ray meets the shape; none beyond tMax if that is less work.
+template <class S>
+double firstWithin(const S& shape, const LocalRay& ray, double tMin, double tMax) {
+  if constexpr (requires { shape.intersect(ray, tMin, tMax); })
+    return shape.intersect(ray, tMin, tMax);
+  else
+    return shape.intersect(ray, tMin);
+}
+
 class RayIntersector {
  public:
   // `ray` in the space of the container; it must outlive the probe.

@@ -27,10 +27,16 @@ struct LightSource {
 inline int pointsOf(const LightSource& light) {
   return std::visit([](const auto& kind) { return kind.points(); }, light.kind);
 }
-// Are its points random?
-inline bool isRandom(const LightSource& light) {
-  return std::holds_alternative<AreaLight>(light.kind) || std::holds_alternative<ExtendedLight>(light.kind);
+// Nothing: its points are not random.
+inline std::optional<LightExtent> extentOf(const LightSource& light, Vec3 position) {
+  return std::visit(
+      [&]<class L>(const L& kind) -> std::optional<LightExtent> {
+        if constexpr (LightWithExtent<L>) return kind.extent(position);
+        return std::nullopt;
+      },
+      light.kind);
 }
+inline bool isRandom(const LightSource& light) { return extentOf(light, {}).has_value(); }
 inline LightSample sampleLight(const LightSource& light, const LightQuery& query, int index) {
   return std::visit([&](const auto& kind) { return kind.sample(query, index); }, light.kind);
 }

@@ -32,6 +32,7 @@ struct AreaLight {
     return light;
   }
   int points() const { return countU * countV; }
+  LightExtent extent(Vec3) const { return {corner, edgeU, edgeV}; }
 
   LightSample sample(const LightQuery& query, int index) const {
     const auto number = static_cast<std::uint32_t>(index);

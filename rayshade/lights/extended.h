@@ -23,6 +23,10 @@ struct ExtendedLight {
     return ExtendedLight{in.vector(), radius};
   }
   int points() const { return 1; }
+  LightExtent extent(Vec3 position) const {
+    const auto [a, b] = basisAround(normalize(centre - position));
+    return {centre - radius * a - radius * b, 2 * radius * a, 2 * radius * b};
+  }
 
   LightSample sample(const LightQuery& query, int) const {
     const Vec3 way = centre - query.position;

@@ -9,6 +9,7 @@
 //   parse      reads its own arguments
 //   points     how many shadow rays one hit sends to it
 //   sample     where point `index` of the light is, as seen from a position
+//   extent     of lights whose points are random: the parallelogram that they lie in, as seen from a position
 //   serialize  its fields, for the wire
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
@@ -34,6 +35,11 @@ struct LightSample {
   double factor = 1;                  // share of the light's colour that goes this way
 };
 
+// World space.
+struct LightExtent {
+  Vec3 corner, edgeU, edgeV;
+};
+
 // What a light may know about the hit that asks.
 struct LightQuery {
   Vec3 position;    // world
@@ -49,6 +55,10 @@ concept Light = Serializable<L> && requires(const L light, const LightQuery& que
   { light.points() } -> std::same_as<int>;
   { light.sample(query, 0) } -> std::same_as<LightSample>;
   L::examples[0];
+};
+template <class L>
+concept LightWithExtent = requires(const L light, Vec3 position) {
+  { light.extent(position) } -> std::same_as<LightExtent>;
 };
 
 }  // namespace rayshade

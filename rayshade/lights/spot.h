@@ -11,6 +11,7 @@
 
 #include <numbers>
 
+#include "rayshade/base/elementary.h"
 #include "rayshade/lights/light.h"
 
 namespace rayshade {
@@ -36,8 +37,8 @@ struct SpotLight {
     if (way == Vec3{}) in.fail("a spot light needs a target other than its own place");
     if (inner > outer) in.fail("the inner angle of a spot light is larger than the outer one");
     light.axis = normalize(way);
-    light.cosineInner = std::cos(inner * std::numbers::pi / 180);
-    light.cosineOuter = std::cos(outer * std::numbers::pi / 180);
+    light.cosineInner = elementary::cos(inner * std::numbers::pi / 180);
+    light.cosineOuter = elementary::cos(outer * std::numbers::pi / 180);
     return light;
   }
   int points() const { return 1; }
@@ -50,7 +51,7 @@ struct SpotLight {
 
   double factorAt(double cosine) const {
     if (!(cosine > 0)) return 0;
-    const double power = std::pow(cosine, coefficient);
+    const double power = elementary::pow(cosine, coefficient);
     if (!(cosineInner > 0)) return power;
     if (cosine < cosineOuter) return 0;
     if (cosine > cosineInner) return power;

@@ -21,6 +21,9 @@ struct Medium {
 using MediumStack = InlineVector<Medium, 2>;  // innermost last; empty: the atmosphere
 
 struct Ray {
+  Ray() {
+  }  // written out, so that a new element of a list is not cleared before: that takes as long as the rest
+
   Vec3 origin, direction;       // |direction| = 1                                              [world units]
   Moment moment;                // for moving objects                                           [scene time]
   int depth = 0;                // 0 from the eye, +1 per reflection or refraction

@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "rayshade/base/color.h"
+#include "rayshade/base/elementary.h"
 #include "rayshade/base/vec.h"
 
 namespace rayshade {
@@ -33,7 +34,7 @@ inline std::optional<Vec3> refracted(Vec3 direction, Vec3 normal, double n1, dou
 // Phong's highlight, cos(alpha)^power; no highlight with power 0 (rayshade's rule).  Bounded: where the normal is not unit
 // the cosine may be above 1.
 inline double phongLobe(double cosine, double power) {
-  return power >= 1e-5 && cosine > 0 ? std::min(std::pow(cosine, power), kMostLight) : 0.0;
+  return power >= 1e-5 && cosine > 0 ? std::min(elementary::pow(cosine, power), kMostLight) : 0.0;
 }
 
 }  // namespace rayshade

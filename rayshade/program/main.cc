@@ -98,7 +98,7 @@ int run(const Options& options, Need& need) {
     const std::unique_ptr<PictureWriter> writer = files.open(frame);
     mark = secondsNow();
     need.what = "to sort the objects of the scene";
-    scene.prepare(exposureOf(head.picture, frame));
+    scene.prepare(exposureOf(head.picture, frame), 1, threadsOf(options));
     times.build = lap();
     ProgressLine progress(!quiet);
     need.what = "for the picture";

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rayshade/program/option_values.h"
 
+#include <cstdio>
+#include <cstdlib>
+
 #include "rayshade/image/picture_file.h"
 
 namespace rayshade {
@@ -8,10 +11,14 @@ namespace rayshade {
 CLI::Validator numberFrom(double low, double high) {
   const std::string range = CLI::detail::to_string(low) + " to " + CLI::detail::to_string(high);
   return CLI::Validator(
-      [=](const std::string& text) {
+      [=](std::string& text) {
         double value = 0;
         const bool good = CLI::detail::lexical_cast(text, value) && value >= low && value <= high;
-        return good ? std::string() : "`" + text + "` is not a number from " + range;
+        if (!good) return "`" + text + "` is not a number from " + range;
+        char exact[40];
+        std::snprintf(exact, sizeof exact, "%a", std::strtod(text.c_str(), nullptr));
+        text = exact;
+        return std::string();
       },
       range);
 }

@@ -12,7 +12,8 @@ namespace rayshade {
 inline constexpr const char* kFile = "FILE";
 inline constexpr const char* kScene = "SCENE";
 
-// Not CLI::Range, which lets through what is not a number.
+// For transform().  Not CLI::Range, which lets through what is not a number; and CLI11 reads through a long double, which is
+// not the same on every processor, so the text becomes one that is exact.
 CLI::Validator numberFrom(double low, double high);
 
 template <class Whole>

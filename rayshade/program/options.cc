@@ -62,17 +62,17 @@ void declareOptions(CLI::App& app, Options& o) {
       ->group(picture);
   app.add_option("-X", o.crop, "crop to left right bottom top, shares of the window")
       ->expected(4)
-      ->check(numberFrom(0, 1))
+      ->transform(numberFrom(0, 1))
       ->allow_extra_args(false)
       ->group(picture);
   app.add_option("-G", o.gamma, "gamma of the output (1: linear)")
-      ->check(numberFrom(0.01, 100))
+      ->transform(numberFrom(0.01, 100))
       ->group(picture);
   app.add_flag("--16", o.sixteenBit, "PNG with 16 bits a channel")->group(picture);
   app.add_flag("-l", o.leftEye, "render the left eye of a stereo pair")->group(picture);
   app.add_flag("-r", o.rightEye, "render the right eye")->group(picture);
   app.add_option("-E", o.eyeSeparation, "distance between the eyes")
-      ->check(numberFrom(0, kHuge))
+      ->transform(numberFrom(0, kHuge))
       ->group(picture);
   app.add_option("-A", o.firstFrame, "first frame of the animation")
       ->check(wholeNumberFrom(0, kMostFrames))
@@ -98,12 +98,12 @@ void declareOptions(CLI::App& app, Options& o) {
       ->group(quality);
   app.add_option("-T", o.contrast, "contrast r g b above which pixels are refined; 0 0 0: all of them")
       ->expected(3)
-      ->check(numberFrom(0, kHuge))
+      ->transform(numberFrom(0, kHuge))
       ->allow_extra_args(false)
       ->group(quality);
   app.add_option("-C", o.cutoff, "weight r g b below which no ray is sent")
       ->expected(3)
-      ->check(numberFrom(0, kHuge))
+      ->transform(numberFrom(0, kHuge))
       ->allow_extra_args(false)
       ->group(quality);
   app.add_option("-D", o.maxDepth, "largest number of reflections and refractions in a row")

@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rayshade/program/version.h"
 
+#include <cstdio>
+
 #include "rayshade/accel/simd.h"
+#include "rayshade/base/arithmetic.h"
 
 namespace rayshade {
 namespace {
@@ -27,8 +30,11 @@ std::string nameAndVersion(const std::string& program) { return program + " " + 
 
 std::string versionText(const std::string& program) {
   const std::string commit = RAYSHADE_COMMIT;
+  char arithmetic[17];
+  std::snprintf(arithmetic, sizeof arithmetic, "%016llx",
+                static_cast<unsigned long long>(arithmeticFingerprint()));
   return nameAndVersion(program) + (commit.empty() ? "" : " (" + commit + ")") +
-         ", for this processor: " + nameOf(thisProcessor());
+         ", for this processor: " + nameOf(thisProcessor()) + ", arithmetic " + arithmetic;
 }
 
 }  // namespace rayshade

@@ -6,8 +6,8 @@
 
 namespace rayshade {
 
-// Name and version; for `--version` also the commit, if it was known when this was built, and the processor for whose
-// registers bundles of rays are traced here.
+// Name and version; for `--version` also the commit, if it was known when this was built, the processor for whose
+// registers bundles of rays are traced here, and the fingerprint of the arithmetic, the same everywhere.
 std::string nameAndVersion(const std::string& program);
 std::string versionText(const std::string& program);
 

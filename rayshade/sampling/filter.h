@@ -10,9 +10,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cmath>
 #include <vector>
 
+#include "rayshade/base/elementary.h"
 #include "rayshade/sampling/picture_spec.h"
 
 namespace rayshade {
@@ -30,7 +30,7 @@ inline std::vector<double> filterWeights(const PixelFilter& filter, std::int32_t
   for (std::int32_t b = 0; b < side; ++b) {
     for (std::int32_t a = 0; a < side; ++a) {
       const double u = -filter.width / 2 + (a + 0.5) * cell, v = -filter.width / 2 + (b + 0.5) * cell;
-      const double weight = filter.gaussian ? std::exp(-(u * u + v * v) / 2) : 1.0;
+      const double weight = filter.gaussian ? elementary::exp(-(u * u + v * v) / 2) : 1.0;
       weights.push_back(weight);
       total += weight;
     }

@@ -3,6 +3,8 @@
 
 #include <numbers>
 
+#include "rayshade/base/elementary.h"
+
 namespace rayshade {
 namespace {
 
@@ -36,7 +38,7 @@ std::optional<View> viewOf(const Camera& camera, const PictureSpec& picture) {
   const double verticalFov =
       camera.verticalFov.value_or(camera.horizontalFov * picture.height / picture.width);
   auto pixel = [&](double degrees, int count) {
-    return 2 * axes->distance * std::tan(degrees / 2 * std::numbers::pi / 180) / count;
+    return 2 * axes->distance * elementary::tan(degrees / 2 * std::numbers::pi / 180) / count;
   };
   View view;
   view.eye = eye;
@@ -67,21 +69,23 @@ Vec3 directionOf(const View& view, const SamplePosition& at) {
   return normalize(view.first + at.u * view.right + at.v * view.down);
 }
 
-Ray rayOf(const View& view, const SamplePosition& at, Vec3 direction, std::int32_t frame, bool pinhole) {
-  Ray ray;
+// Makes a new ray that of a sample.
+void aim(Ray& ray, const View& view, const SamplePosition& at, Vec3 direction, std::int32_t frame,
+         bool pinhole) {
   ray.origin = view.eye;
   ray.direction = direction;
   ray.moment = {at.time, frame};
   ray.sample = at.number;
   ray.key = at.key;
   if (!pinhole) throughLens(view, at, ray);
-  return ray;
 }
 
 }  // namespace
 
 Ray primaryRay(const View& view, const SamplePosition& at, std::int32_t frame) {
-  return rayOf(view, at, directionOf(view, at), frame, isPinhole(view));
+  Ray ray;
+  aim(ray, view, at, directionOf(view, at), frame, isPinhole(view));
+  return ray;
 }
 
 void primaryRays(const View& view, const PictureSpec& picture, std::uint64_t seed, std::int32_t frame,
@@ -90,6 +94,7 @@ void primaryRays(const View& view, const PictureSpec& picture, std::uint64_t see
   const bool pinhole = isPinhole(view);
   SamplePosition positions[kAtOnce];
   Vec3 directions[kAtOnce];
+  rays.clear();
   rays.resize(samples.size());
   for (std::size_t first = 0; first < samples.size(); first += kAtOnce) {
     const std::span some = samples.subspan(first, std::min(kAtOnce, samples.size() - first));
@@ -97,7 +102,7 @@ void primaryRays(const View& view, const PictureSpec& picture, std::uint64_t see
     // In a loop of its own: the roots and divisions of several rays are on their way at a time.
     for (std::size_t i = 0; i < some.size(); ++i) directions[i] = directionOf(view, positions[i]);
     for (std::size_t i = 0; i < some.size(); ++i)
-      rays[first + i] = rayOf(view, positions[i], directions[i], frame, pinhole);
+      aim(rays[first + i], view, positions[i], directions[i], frame, pinhole);
   }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rayshade/shading/combine.h"
 
+#include "rayshade/base/elementary.h"
 #include "rayshade/optics/refraction.h"
 
 namespace rayshade {
@@ -18,26 +19,9 @@ Color throughAir(Color seen, Vec3 origin, Vec3 direction, double distance, const
 
 Color attenuated(Color sum, Vec3 origin, Vec3 direction, double distance, double extinct, bool inAir,
                  const SceneSettings& settings) {
-  if (extinct != 1) sum = std::pow(extinct, distance) * sum;
+  if (extinct != 1) sum = elementary::pow(extinct, distance) * sum;
   if (inAir && !settings.atmosphere.empty()) sum = throughAir(sum, origin, direction, distance, settings);
   return sum;
-}
-
-ReturnPath returnPath(const Ray& ray, double t, const OnwardRays& onward, const SceneSettings& settings) {
-  ReturnPath back;
-  back.extinct = ray.extinct;
-  back.inAir = ray.media.empty();
-  const bool throughAtmosphere = back.inAir && !settings.atmosphere.empty();
-  if (throughAtmosphere) {
-    back.origin = ray.origin;
-    back.direction = ray.direction;
-  }
-  if (throughAtmosphere || back.extinct != 1) back.distance = t;
-  back.transmitted = onward.transmitted.has_value();
-  back.reflected = onward.reflected.has_value();
-  back.transmitWeight = onward.transmitWeight;
-  back.reflectWeight = onward.reflectWeight;
-  return back;
 }
 
 Intersection describe(const Ray& ray, const ReturnPath& back, const SurfacePoint& at,

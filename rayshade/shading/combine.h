@@ -43,7 +43,24 @@ struct Gathered {
   Color transmitted, reflected;
 };
 
-ReturnPath returnPath(const Ray& ray, double t, const OnwardRays& onward, const SceneSettings& settings);
+inline ReturnPath returnPath(const Ray& ray, double t, const OnwardRays& onward,
+                             const SceneSettings& settings) {
+  ReturnPath back;
+  back.extinct = ray.extinct;
+  back.inAir = ray.media.empty();
+  const bool throughAtmosphere = back.inAir && !settings.atmosphere.empty();
+  if (throughAtmosphere) {
+    back.origin = ray.origin;
+    back.direction = ray.direction;
+  }
+  if (throughAtmosphere || back.extinct != 1) back.distance = t;
+  back.transmitted = onward.transmitted.has_value();
+  back.reflected = onward.reflected.has_value();
+  back.transmitWeight = onward.transmitWeight;
+  back.reflectWeight = onward.reflectWeight;
+  return back;
+}
+
 Intersection describe(const Ray& ray, const ReturnPath& back, const SurfacePoint& at,
                       LightVisibilities visibility);
 

@@ -77,17 +77,16 @@ const Surface& boundSurface(const Model& model, const HitPath& path) {
   return store.surfaceOrDefault(kNone);
 }
 
-SurfacePoint evaluateSurface(const Model& model, const Hit& hit, const Ray& ray,
-                             const SceneSettings& settings) {
+void evaluateSurface(const Model& model, const Hit& hit, const Ray& ray, const SceneSettings& settings,
+                     SurfacePoint& at) {
   const SceneStore& store = model.store();
   const PlacedObject& object = store.object(hit.object);
   const PlacedNode& node = store.node(object.node);
   if (refersToDefinition(object.kind) || !node.identity || node.textured)
-    return evaluateSurface(model, hit, pathTo(model, ray, hit), ray, settings);
+    return evaluateSurface(model, hit, pathTo(model, ray, hit), ray, settings, at);
   // The ordinary case, a shape of the world as it is: the same answers as below without a path.
   const LocalRay local{ray.origin, ray.direction, 1};
   ShapePoint point = withShape(store, object, [&](const auto& body) { return body.pointAt(local, hit.t); });
-  SurfacePoint at;
   at.smooth = point.normal != point.geometricNormal;
   at.entering = turnToViewer(point, ray.direction);
   at.position = point.position;
@@ -95,17 +94,15 @@ SurfacePoint evaluateSurface(const Model& model, const Hit& hit, const Ray& ray,
   at.geometricNormal = point.geometricNormal;
   at.error = point.error + kRounding * maxAbs(at.position);
   at.surface = store.surfaceOrDefault(object.surface);
-  return at;
 }
 
-SurfacePoint evaluateSurface(const Model& model, const Hit& hit, const HitPath& path, const Ray& ray,
-                             const SceneSettings& settings) {
+void evaluateSurface(const Model& model, const Hit& hit, const HitPath& path, const Ray& ray,
+                     const SceneSettings& settings, SurfacePoint& at) {
   const SceneStore& store = model.store();
   const PathStep& last = path.steps.back();
   PlacedPoint placed = placedPoint(model, path, ray, hit.t);
   ShapePoint& shapePoint = placed.shape;
 
-  SurfacePoint at;
   at.smooth = shapePoint.normal != shapePoint.geometricNormal;
   const bool outside = turnToViewer(shapePoint, last.ray.direction);
   at.entering = path.entering.value_or(outside);
@@ -131,7 +128,6 @@ SurfacePoint evaluateSurface(const Model& model, const Hit& hit, const HitPath& 
   at.position = placed.position;
   at.geometricNormal = toWorld(shapePoint.geometricNormal);
   at.error = placed.error;
-  return at;
 }
 
 }  // namespace rayshade

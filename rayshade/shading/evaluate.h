@@ -9,12 +9,12 @@
 
 namespace rayshade {
 
-// Requires hit.found().
-SurfacePoint evaluateSurface(const Model& model, const Hit& hit, const Ray& ray,
-                             const SceneSettings& settings);
+// Requires hit.found().  All of `at` is filled in; it is large, and so is made where it stays.
+void evaluateSurface(const Model& model, const Hit& hit, const Ray& ray, const SceneSettings& settings,
+                     SurfacePoint& at);
 // The same when pathTo() has been asked already.
-SurfacePoint evaluateSurface(const Model& model, const Hit& hit, const HitPath& path, const Ray& ray,
-                             const SceneSettings& settings);
+void evaluateSurface(const Model& model, const Hit& hit, const HitPath& path, const Ray& ray,
+                     const SceneSettings& settings, SurfacePoint& at);
 
 // The surface that binds a hit, before textures: the innermost of the path from the shape up to the world.
 const Surface& boundSurface(const Model& model, const HitPath& path);

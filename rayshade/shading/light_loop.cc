@@ -4,16 +4,6 @@
 #include "rayshade/optics/refraction.h"
 
 namespace rayshade {
-namespace {
-
-// Could light from this side change the colour?
-bool answers(const Surface& surface, double cosine) {
-  if (cosine > 0)
-    return surface.diffuse != kBlack || surface.specular != kBlack;  // textures may take light away
-  return surface.translucency >= kNegligible;
-}
-
-}  // namespace
 
 std::size_t lightPointCount(const SceneSettings& settings) {
   std::size_t count = 0;
@@ -29,26 +19,6 @@ const LightSource& lightOfRow(const SceneSettings& settings, std::size_t row) {
     row -= points;
   }
   return settings.lights[light];
-}
-
-LightQuery lightQuery(Vec3 position, RandomKey key, int sample, std::uint32_t light,
-                      const SceneSettings& settings) {
-  return {position, child(key, Branch::light, light), sample, settings.samples};
-}
-
-double lightCosine(Vec3 toward, Vec3 normal, Vec3 geometricNormal, bool smooth) {
-  const double c = dot(toward, normal);
-  if (c > 0 || !smooth) return c;
-  const double g = dot(toward, geometricNormal);
-  return g > 0 ? g : c;
-}
-
-LightVisibility visibilityOf(const LightSource& light, const LightSample& sample, const SurfacePoint& at,
-                             const SceneSettings& settings) {
-  const double cosine = lightCosine(sample.toward, at.normal, at.geometricNormal, at.smooth);
-  if (!(sample.factor > 0) || !answers(at.surface, cosine)) return LightVisibility::none;
-  return settings.shadows && light.castsShadows && !at.surface.noShadow ? LightVisibility::traced
-                                                                        : LightVisibility::unshadowed;
 }
 
 Color addLight(Color sum, const Surface& surface, const Facing& facing, Vec3 toward, Color light) {

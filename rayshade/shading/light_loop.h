@@ -48,12 +48,10 @@ void forEachLightPoint(const SceneSettings& settings, Use&& use) {
 }
 
 // What a light is asked for at a hit at `position` (world) of a ray with this key and sample number.
-LightQuery lightQuery(Vec3 position, RandomKey key, int sample, std::uint32_t light,
-                      const SceneSettings& settings);
-
-// What a point of a light, seen as `sample` from the hit, means to it.
-LightVisibility visibilityOf(const LightSource& light, const LightSample& sample, const SurfacePoint& at,
-                             const SceneSettings& settings);
+inline LightQuery lightQuery(Vec3 position, RandomKey key, int sample, std::uint32_t light,
+                             const SceneSettings& settings) {
+  return {position, child(key, Branch::light, light), sample, settings.samples};
+}
 
 // How a hit is turned towards lights and viewer.  World space.
 struct Facing {
@@ -64,7 +62,28 @@ struct Facing {
 
 // The cosine that decides on which side of the surface a light is: that of the shading normal, unless that one is interpolated and
 // says "behind" while the surface itself says "in front".
-double lightCosine(Vec3 toward, Vec3 normal, Vec3 geometricNormal, bool smooth);
+inline double lightCosine(Vec3 toward, Vec3 normal, Vec3 geometricNormal, bool smooth) {
+  const double c = dot(toward, normal);
+  if (c > 0 || !smooth) return c;
+  const double g = dot(toward, geometricNormal);
+  return g > 0 ? g : c;
+}
+
+// Could light from this side change the colour?
+inline bool answersLight(const Surface& surface, double cosine) {
+  if (cosine > 0)
+    return surface.diffuse != kBlack || surface.specular != kBlack;  // textures may take light away
+  return surface.translucency >= kNegligible;
+}
+
+// What a point of a light, seen as `sample` from the hit, means to it.
+inline LightVisibility visibilityOf(const LightSource& light, const LightSample& sample,
+                                    const SurfacePoint& at, const SceneSettings& settings) {
+  const double cosine = lightCosine(sample.toward, at.normal, at.geometricNormal, at.smooth);
+  if (!(sample.factor > 0) || !answersLight(at.surface, cosine)) return LightVisibility::none;
+  return settings.shadows && light.castsShadows && !at.surface.noShadow ? LightVisibility::traced
+                                                                        : LightVisibility::unshadowed;
+}
 
 // Adds one point of a light: `toward` it, `light` what arrives from it.
 Color addLight(Color sum, const Surface& surface, const Facing& facing, Vec3 toward, Color light);

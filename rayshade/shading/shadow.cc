@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rayshade/shading/shadow.h"
 
+#include "rayshade/base/elementary.h"
 #include "rayshade/shading/evaluate.h"
 
 namespace rayshade {
@@ -27,8 +28,10 @@ ShadowRay shadowRay(const Ray& ray, const SurfacePoint& at, const LightSample& s
 bool passSurface(const Model& model, const Hit& hit, ShadowRay& shadow, const SceneSettings& settings) {
   const HitPath path = pathTo(model, shadow.ray, hit);
   if (boundSurface(model, path).transparency < kNegligible) return false;
-  const SurfacePoint at = evaluateSurface(model, hit, path, shadow.ray, settings);
-  if (shadow.inside) shadow.through = shadow.through * std::pow(shadow.insideExtinct, hit.t - shadow.last);
+  SurfacePoint at;
+  evaluateSurface(model, hit, path, shadow.ray, settings, at);
+  if (shadow.inside)
+    shadow.through = shadow.through * elementary::pow(shadow.insideExtinct, hit.t - shadow.last);
   shadow.through = limited(shadow.through * (at.surface.transparency * at.surface.body));
   if (!anyAbove(shadow.through, kNegligible)) return false;
   shadow.inside = at.entering;

@@ -6,9 +6,9 @@
 namespace rayshade {
 namespace {
 
-// A child of a ray, leaving the hit in a direction.
-Ray secondaryRay(const Ray& ray, const SurfacePoint& at, Vec3 direction, Branch branch, Color weight) {
-  Ray child;
+// Makes a child of a ray, leaving the hit in a direction.
+void secondaryRay(const Ray& ray, const SurfacePoint& at, Vec3 direction, Branch branch, Color weight,
+                  Ray& child) {
   child.origin = originOff(at, direction);
   child.direction = direction;
   child.moment = ray.moment;
@@ -16,7 +16,6 @@ Ray secondaryRay(const Ray& ray, const SurfacePoint& at, Vec3 direction, Branch 
   child.sample = ray.sample;
   child.key = rayshade::child(ray.key, branch);
   child.contribution = ray.contribution * weight;
-  return child;
 }
 
 // The media before and behind the surface.  Leaving, the index of the hit surface itself counts as the inner one
@@ -40,10 +39,12 @@ Passage passage(const Ray& ray, const SurfacePoint& at, const SceneSettings& set
 
 }  // namespace
 
-OnwardRays spawnOnward(const Ray& ray, const SurfacePoint& at, const SceneSettings& settings) {
+void spawnOnward(const Ray& ray, const SurfacePoint& at, const SceneSettings& settings, OnwardRays& spawned) {
   const Surface& surface = at.surface;
-  OnwardRays spawned;
-  if (ray.depth >= settings.limits.maxDepth) return spawned;
+  spawned.transmitted.reset();
+  spawned.reflected.reset();
+  spawned.transmitWeight = spawned.reflectWeight = kBlack;
+  if (ray.depth >= settings.limits.maxDepth) return;
 
   Color reflectWeight = surface.reflect * surface.specular;
   if (surface.transparency > kNegligible) {
@@ -52,9 +53,10 @@ OnwardRays spawnOnward(const Ray& ray, const SurfacePoint& at, const SceneSettin
       Passage through = passage(ray, at, settings);
       if (const auto direction = refracted(ray.direction, at.normal, through.n1, through.n2)) {
         spawned.transmitWeight = weight;
-        spawned.transmitted = secondaryRay(ray, at, *direction, Branch::transmitted, weight);
-        if (!through.behind.empty()) spawned.transmitted->extinct = through.behind.back().extinct;
-        spawned.transmitted->media = std::move(through.behind);
+        Ray& child = spawned.transmitted.emplace();
+        secondaryRay(ray, at, *direction, Branch::transmitted, weight, child);
+        if (!through.behind.empty()) child.extinct = through.behind.back().extinct;
+        child.media = std::move(through.behind);
       } else {
         reflectWeight = reflectWeight + weight;  // total reflection
       }
@@ -63,11 +65,11 @@ OnwardRays spawnOnward(const Ray& ray, const SurfacePoint& at, const SceneSettin
   if (anyAbove(reflectWeight, kNegligible) &&
       anyAbove(reflectWeight * ray.contribution, settings.limits.cutoff)) {
     spawned.reflectWeight = reflectWeight;
-    spawned.reflected = secondaryRay(ray, at, normalize(mirrored(ray.direction, at.normal)),
-                                     Branch::reflected, reflectWeight);
-    spawned.reflected->media = ray.media;
+    Ray& child = spawned.reflected.emplace();
+    secondaryRay(ray, at, normalize(mirrored(ray.direction, at.normal)), Branch::reflected, reflectWeight,
+                 child);
+    child.media = ray.media;
   }
-  return spawned;
 }
 
 }  // namespace rayshade

@@ -19,6 +19,7 @@ struct OnwardRays {
   Color transmitWeight, reflectWeight;
 };
 
-OnwardRays spawnOnward(const Ray& ray, const SurfacePoint& at, const SceneSettings& settings);
+// All of `spawned` is filled in; it is large, and so is made where it stays.
+void spawnOnward(const Ray& ray, const SurfacePoint& at, const SceneSettings& settings, OnwardRays& spawned);
 
 }  // namespace rayshade

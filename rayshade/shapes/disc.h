@@ -8,6 +8,7 @@
 
 #include <numbers>
 
+#include "rayshade/base/elementary.h"
 #include "rayshade/shapes/plane.h"
 
 namespace rayshade {
@@ -33,8 +34,8 @@ struct Disc {
 
   Bounds bounds() const {
     const Vec3 n = normal;
-    const Vec3 reach{radius * std::hypot(n.y, n.z), radius * std::hypot(n.z, n.x),
-                     radius * std::hypot(n.x, n.y)};
+    const Vec3 reach{radius * elementary::hypot(n.y, n.z), radius * elementary::hypot(n.z, n.x),
+                     radius * elementary::hypot(n.x, n.y)};
     return {centre - reach, centre + reach};
   }
 
@@ -62,7 +63,7 @@ struct Disc {
     if (std::abs(cosine) > 1) {
       at.u = 0.5;
     } else {
-      const double turn = std::acos(cosine) / (2 * std::numbers::pi);
+      const double turn = elementary::acos(cosine) / (2 * std::numbers::pi);
       at.u = position.y < 0 ? 1 - turn : turn;
     }
     at.dpdv = from / distance;

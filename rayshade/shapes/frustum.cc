@@ -3,6 +3,7 @@
 
 #include <numbers>
 
+#include "rayshade/base/elementary.h"
 #include "rayshade/base/transform.h"
 
 namespace rayshade {
@@ -38,7 +39,8 @@ std::optional<Frustum> frustumBetween(Vec3 base, double baseRadius, Vec3 top, do
 }
 
 Bounds Frustum::bounds() const {
-  const Vec3 reach{std::hypot(axis.y, axis.z), std::hypot(axis.z, axis.x), std::hypot(axis.x, axis.y)};
+  const Vec3 reach{elementary::hypot(axis.y, axis.z), elementary::hypot(axis.z, axis.x),
+                   elementary::hypot(axis.x, axis.y)};
   const Vec3 end = base + length * axis;
   return join(Bounds{base - radius * reach, base + radius * reach},
               Bounds{end - endRadius * reach, end + endRadius * reach});
@@ -139,11 +141,12 @@ ShapePoint Frustum::pointAt(const LocalRay& ray, double t) const {
 SurfaceCoordinates Frustum::coordinates(Vec3 position) const {
   const Affine place = alongAxis(base, axis, 1, length);
   const Vec3 canonical = mapPoint(place.inverse, position);
-  const double distance = std::hypot(canonical.x, canonical.y);
+  const double distance = elementary::hypot(canonical.x, canonical.y);
   SurfaceCoordinates at;
   at.v = canonical.z;
   if (distance > 0) {
-    const double turn = std::acos(std::clamp(canonical.x / distance, -1.0, 1.0)) / (2 * std::numbers::pi);
+    const double turn =
+        elementary::acos(std::clamp(canonical.x / distance, -1.0, 1.0)) / (2 * std::numbers::pi);
     at.u = canonical.y < 0 ? 1 - turn : turn;
   }
   const Vec3 radial = distance > 0 ? Vec3{canonical.x / distance, canonical.y / distance, 0} : Vec3{1, 0, 0};

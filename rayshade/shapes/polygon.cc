@@ -117,20 +117,21 @@ std::optional<Polygon> Polygon::parse(Arguments& in) {
   return polygon;
 }
 
-double Polygon::intersect(const LocalRay& ray, double tMin) const {
+double Polygon::intersect(const LocalRay& ray, double tMin, double tMax) const {
   const double t = meetPlane(ray, corners[0], normal);
-  if (!(std::abs(t) < kNoHit)) return kNoHit;
-  if (!(bent ? windsAround(corners, dropAxis(ray.origin + t * ray.direction, dominantAxis(normal)))
-             : inside(ray, t)))
-    return kNoHit;
   // The plane decides whether it is before the ray: only what is there may be moved, or a surface would meet rays that leave it.
+  if (!(t > 0 && t < kNoHit)) return kNoHit;
   const double clipped = insideExtent(extent, ray, t);
-  return t > 0 && clipped > tMin ? clipped : kNoHit;
+  if (!(clipped > tMin && clipped <= tMax)) return kNoHit;
+  return (bent ? windsAround(corners, dropAxis(ray.origin + t * ray.direction, dominantAxis(normal)))
+               : inside(ray, t))
+             ? clipped
+             : kNoHit;
 }
 
 bool Polygon::inside(const LocalRay& ray, double t) const {
   if (outline)
-    if (const std::optional<bool> sure = outline->windsAround(ray, t)) return *sure;
+    if (const std::optional<bool> sure = outline->windsAround(corners, ray, t)) return *sure;
   return lookAlong(ray, [this](const auto& shear) { return windsAround(corners, shear); });
 }
 

@@ -37,7 +37,7 @@ struct Polygon {
 
   void prepare();  // computes extent and outline
   Bounds bounds() const { return extent; }
-  double intersect(const LocalRay& ray, double tMin) const;
+  double intersect(const LocalRay& ray, double tMin, double tMax = kNoHit) const;
   ShapePoint pointAt(const LocalRay& ray, double t) const;
   SurfaceCoordinates coordinates(const ShapePoint&, Vec3 position) const {
     SurfaceCoordinates at;  // x and y of object space, whatever the plane

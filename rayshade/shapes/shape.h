@@ -18,6 +18,7 @@
 //                of the local ray.  All roots of one ray are the same numbers whatever tMin, so
 //                intersect(ray, intersect(ray, t)) walks through them.  Exact tangency is a hit; a ray that
 //                lies in a plane misses it.  No absolute epsilon.
+//                With a third argument, tMax: what lies beyond it need not be found
 //   pointAt      what is at t, a root that intersect returned for that ray
 //   coordinates  u, v and the tangents at a point of the shape's space, for textures.  `at` is the hit;
 //                `position` may differ from at.position (texture mapping may move it)

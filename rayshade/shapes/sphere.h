@@ -12,6 +12,7 @@
 
 #include <numbers>
 
+#include "rayshade/base/elementary.h"
 #include "rayshade/shapes/shape.h"
 
 namespace rayshade {
@@ -62,11 +63,12 @@ struct Sphere {
   SurfaceCoordinates coordinates(const ShapePoint&, Vec3 position) const {
     const Vec3 n = normalize(position - centre);
     constexpr double kPole = 1e-5;  // rayshade's own limit: u is 0 this close to a pole
-    const double phi = std::acos(std::clamp(-n.z, -1.0, 1.0));
+    const double phi = elementary::acos(std::clamp(-n.z, -1.0, 1.0));
     SurfaceCoordinates at;
     at.v = phi / std::numbers::pi;
     if (at.v >= kPole && at.v <= 1 - kPole) {
-      const double theta = std::acos(std::clamp(n.x / std::sin(phi), -1.0, 1.0)) / (2 * std::numbers::pi);
+      const double theta =
+          elementary::acos(std::clamp(n.x / elementary::sin(phi), -1.0, 1.0)) / (2 * std::numbers::pi);
       at.u = n.y > 0 ? theta : 1 - theta;
     }
     at.dpdu = normalize({-n.y, n.x, 0});

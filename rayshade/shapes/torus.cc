@@ -3,6 +3,7 @@
 
 #include <numbers>
 
+#include "rayshade/base/elementary.h"
 #include "rayshade/base/transform.h"
 
 namespace rayshade {
@@ -82,8 +83,8 @@ std::optional<Torus> Torus::parse(Arguments& in) {
 
 Bounds Torus::bounds() const {
   const Vec3 a = normalize(axis);
-  const Vec3 reach{swept * std::hypot(a.y, a.z) + tube, swept * std::hypot(a.x, a.z) + tube,
-                   swept * std::hypot(a.x, a.y) + tube};
+  const Vec3 reach{swept * elementary::hypot(a.y, a.z) + tube, swept * elementary::hypot(a.x, a.z) + tube,
+                   swept * elementary::hypot(a.x, a.y) + tube};
   return {centre - reach, centre + reach};
 }
 
@@ -129,12 +130,12 @@ double Torus::intersect(const LocalRay& ray, double tMin) const {
 ShapePoint Torus::pointAt(const LocalRay& ray, double t) const {
   const Matrix axes = axesOf(*this);
   const Vec3 q = toCanonical(axes, ray.origin + t * ray.direction - centre);
-  const double rho = std::hypot(q.x, q.y);
+  const double rho = elementary::hypot(q.x, q.y);
   const Vec3 outward = rho > 0 ? Vec3{q.x / rho, q.y / rho, 0} : Vec3{1, 0, 0};
   // The nearest point of the swept circle; on the inner sheet of a spindle torus the farthest one counts.
-  const double near = std::hypot(rho - swept, q.z), far = std::hypot(rho + swept, q.z);
+  const double near = elementary::hypot(rho - swept, q.z), far = elementary::hypot(rho + swept, q.z);
   const bool innerSheet = std::abs(far - tube) < std::abs(near - tube);
-  const double middle = innerSheet ? -swept : swept, side = rho - middle, away = std::hypot(side, q.z);
+  const double middle = innerSheet ? -swept : swept, side = rho - middle, away = elementary::hypot(side, q.z);
   // In the plane of the axis, whatever rounding says: q may be on the swept circle itself.
   const Vec3 fromCircle = away > 0 ? (side / away) * outward + Vec3{0, 0, q.z / away} : outward;
   const Vec3 onSurface = middle * outward + tube * fromCircle;
@@ -154,8 +155,9 @@ SurfaceCoordinates Torus::coordinates(const ShapePoint& at, Vec3 position) const
   constexpr double kTurn = 2 * std::numbers::pi;
   const Matrix axes = axesOf(*this);
   const Vec3 q = toCanonical(axes, position - centre);
-  const double around = std::atan2(q.y, q.x) / kTurn;
-  const double v = std::acos(std::clamp((swept - std::hypot(q.x, q.y)) / tube, -1.0, 1.0)) / kTurn;
+  const double around = elementary::atan2(q.y, q.x) / kTurn;
+  const double v =
+      elementary::acos(std::clamp((swept - elementary::hypot(q.x, q.y)) / tube, -1.0, 1.0)) / kTurn;
   SurfaceCoordinates c;
   c.u = around < 0 ? around + 1 : around;
   c.v = q.z > 0 ? 1 - v : v;

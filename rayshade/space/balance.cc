@@ -77,7 +77,7 @@ class Planes {
       }
       if (high < to) edges.push_back({std::max(high, from), amount, false});
     }
-    std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) { return a.at < b.at; });
+    std::stable_sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) { return a.at < b.at; });
     edges.push_back({to, {}, true});
     double last = from;
     for (const Edge& edge : edges) {

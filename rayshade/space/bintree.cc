@@ -2,9 +2,11 @@
 #include "rayshade/space/bintree.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numeric>
 
+#include "rayshade/base/elementary.h"
 #include "rayshade/space/balance.h"
 
 namespace rayshade {
@@ -107,7 +109,7 @@ class Cutter {
       double bytes = 0;
       for (const std::uint32_t i : contents.objects) bytes += objects_[i].bytes;
       const double room = mostBytes_ * bytesOf(portions) / bytes;
-      const double slack = room > 1 ? std::pow(room, 1 / std::ceil(std::log2(voxels))) : 1;
+      const double slack = room > 1 ? elementary::pow(room, 1.0 / std::bit_width(voxels - 1)) : 1;
       if (const auto cut = balancedCut(box, objects_, contents.objects, contents.costs, portions, slack))
         return *cut;
     }

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rayshade/base/elementary.h"
+
 namespace rayshade {
 namespace {
 
@@ -80,7 +82,8 @@ void march(const ExtinctionGrid& haze, const Vec3& origin, const Vec3& direction
     const double extinction =
         along.x * std::abs(direction.x) + along.y * std::abs(direction.y) + along.z * std::abs(direction.z);
     // Most cells are empty.
-    const double stopped = extinction > 0 ? strength * -std::expm1(-extinction * std::max(0.0, exit - t)) : 0;
+    const double stopped =
+        extinction > 0 ? strength * -elementary::expm1(-extinction * std::max(0.0, exit - t)) : 0;
     f(cell, strength, stopped);
     strength -= stopped;
     t = exit;

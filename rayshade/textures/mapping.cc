@@ -3,12 +3,14 @@
 
 #include <numbers>
 
+#include "rayshade/base/elementary.h"
+
 namespace rayshade {
 namespace {
 
 // The angle around the axis, as a share of a turn.
 double turnOf(double across, double aside) {
-  const double turn = std::atan2(aside, across) / (2 * std::numbers::pi);
+  const double turn = elementary::atan2(aside, across) / (2 * std::numbers::pi);
   return turn < 0 ? turn + 1 : turn;
 }
 
@@ -17,7 +19,7 @@ MappedCoordinates spherical(const Mapping& mapping, Vec3 position) {
   const Vec3 q = normalize(position - mapping.origin);
   const double x = dot(q, mapping.across), y = dot(q, mapping.aside), z = dot(q, mapping.up);
   MappedCoordinates at;
-  at.v = std::acos(std::clamp(-z, -1.0, 1.0)) / std::numbers::pi;
+  at.v = elementary::acos(std::clamp(-z, -1.0, 1.0)) / std::numbers::pi;
   if (at.v >= kPole && at.v <= 1 - kPole) at.u = turnOf(x, y);
   // differs from rayshade4: it leaves the tangents unset.
   at.dpdu = normalize(x * mapping.aside - y * mapping.across);

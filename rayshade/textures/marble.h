@@ -8,6 +8,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "rayshade/base/elementary.h"
 #include "rayshade/base/noise.h"
 #include "rayshade/textures/colormap.h"
 #include "rayshade/textures/texture.h"
@@ -30,8 +31,8 @@ struct Marble {
 
   const Surface* otherSurface() const { return nullptr; }
   void apply(TextureHit& hit) const {
-    const double wave = std::sin(8 * chaos(hit.position, 6) + 7 * hit.position.z);
-    const double value = std::pow(0.5 * (wave + 1), 0.77);
+    const double wave = elementary::sin(8 * chaos(hit.position, 6) + 7 * hit.position.z);
+    const double value = elementary::pow(0.5 * (wave + 1), 0.77);
     if (colormap)
       scaleAmbientAndDiffuse(hit.surface, colormap->at(255 * value));
     else

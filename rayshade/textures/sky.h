@@ -8,6 +8,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "rayshade/base/elementary.h"
 #include "rayshade/base/noise.h"
 #include "rayshade/textures/fractal.h"
 #include "rayshade/textures/texture.h"
@@ -40,7 +41,7 @@ struct Sky {
     double intensity = unitInterval((share - clear) / (opaque - clear));
     // An exponent below 0 makes bright clouds.  differs from rayshade4: 0 becomes so much and not infinity.
     constexpr double kBrightest = 1e6;
-    if (exponent != 0) intensity = std::min(std::pow(intensity, exponent), kBrightest);
+    if (exponent != 0) intensity = std::min(elementary::pow(intensity, exponent), kBrightest);
     hit.surface.transparency = 1 - intensity;
     scaleAmbientAndDiffuse(hit.surface, intensity);
   }

@@ -3,14 +3,14 @@
 
 namespace rayshade {
 
-void Scene::prepare(const Exposure& exposure, std::uint32_t voxels) {
+void Scene::prepare(const Exposure& exposure, std::uint32_t voxels, unsigned threads) {
   model.prepare(exposure);
   const auto objects = model.store().objectsOf(kWorld);
   regions_.clear();
   if (voxels == 1) {
     tree_ = {};
     blocks_ = BlockMap::everything();
-    regions_.push_back(model.regionOf({objects.begin(), objects.end()}));
+    regions_.push_back(model.regionOf({objects.begin(), objects.end()}, threads));
     all_ = {&model, &regions_[0]};
     return;
   }

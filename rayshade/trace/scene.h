@@ -11,7 +11,7 @@ class Scene final : public LocalSpace {
  public:
   // Places what the model holds during an exposure and builds the accelerators.  Cuts space into `voxels` equal voxels; one is the
   // ordinary case, more let tests compare visits with those of tasks.
-  void prepare(const Exposure& exposure, std::uint32_t voxels = 1);
+  void prepare(const Exposure& exposure, std::uint32_t voxels = 1, unsigned threads = 1);
 
   Model model;
   SceneSettings settings;

@@ -11,7 +11,7 @@ void evaluate(const RayHit& hit, const SceneSettings& settings, const ShadingWor
               ShadedHit& at) {
   at.ray = hit.ray;
   at.t = hit.hit.t;
-  at.point = evaluateSurface(*hit.model, hit.hit, *hit.ray, settings);
+  evaluateSurface(*hit.model, hit.hit, *hit.ray, settings, at.point);
   at.facing = {at.point.normal, at.point.geometricNormal, at.point.smooth,
                mirrored(hit.ray->direction, at.point.normal)};
   at.sum = at.point.surface.ambient * settings.ambient;
@@ -85,7 +85,7 @@ void shadeHits(LocalSpace& space, std::span<const RayHit> hits, const SceneSetti
     }
   });
   for (ShadedHit& at : shaded) {
-    at.onward = spawnOnward(*at.ray, at.point, settings);
+    spawnOnward(*at.ray, at.point, settings, at.onward);
     counts.transmittedRays += at.onward.transmitted.has_value();
     counts.reflectedRays += at.onward.reflected.has_value();
   }

@@ -22,6 +22,8 @@ struct Tracer::Expected {
 struct Tracer::Level {
   // A hit that waits for what its onward rays see.
   struct WaitingHit {
+    WaitingHit() {}  // written out: not cleared before
+
     Expected* goal = nullptr;  // of its colour
     Color sum;                 // of the lights
     ReturnPath back;

@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 
+#include "rayshade/base/elementary.h"
 #include "scenes/spd/spd.h"
 
 namespace rayshade::spd {
@@ -24,13 +25,13 @@ Directions childDirections() {
   // The first of the upper three points to azimuth 45 degrees; its neighbours on the equator are 30 degrees off.
   Directions result;
   const double height = std::sqrt(2.0 / 3), across = std::sqrt(1.0 / 3);
-  const double angle15 = std::acos(-1) / 12;
+  const double angle15 = elementary::acos(-1) / 12;
   for (int third = 0; third < 3; ++third) {
     const double upper = angle15 * (3 + 8 * third);
-    result[3 * third] = {across * std::cos(upper), across * std::sin(upper), height};
+    result[3 * third] = {across * elementary::cos(upper), across * elementary::sin(upper), height};
     for (int side = 0; side < 2; ++side) {
       const double equator = angle15 * (1 + 4 * side + 8 * third);
-      result[3 * third + 1 + side] = {std::cos(equator), std::sin(equator), 0};
+      result[3 * third + 1 + side] = {elementary::cos(equator), elementary::sin(equator), 0};
     }
   }
   return result;

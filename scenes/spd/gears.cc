@@ -6,9 +6,9 @@
 // Source: Haines 1987 for the idea; the measures were taken from pictures and files of the original scene.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <array>
-#include <cmath>
 #include <vector>
 
+#include "rayshade/base/elementary.h"
 #include "scenes/spd/spd.h"
 
 namespace rayshade::spd {
@@ -26,15 +26,15 @@ using Outline = std::array<Vec3, kCorners>;
 
 Outline outline(bool turned) {
   Outline result;
-  const double degree = std::acos(-1) / 180;
+  const double degree = elementary::acos(-1) / 180;
   for (int tooth = 0; tooth < kTeeth; ++tooth) {
     const double middle = kTooth * (tooth + (turned ? 0.5 : 0));
     const double angles[] = {middle - kTipHalfWidth, middle + kTipHalfWidth, middle + kValleyStart,
                              middle + kTooth - kValleyStart};
     for (int i = 0; i < 4; ++i) {
       const double radius = i < 2 ? kTipRadius : kValleyRadius;
-      result[4 * tooth + i] = {radius * std::cos(angles[i] * degree), radius * std::sin(angles[i] * degree),
-                               0};
+      result[4 * tooth + i] = {radius * elementary::cos(angles[i] * degree),
+                               radius * elementary::sin(angles[i] * degree), 0};
     }
   }
   return result;

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "rayshade/base/elementary.h"
 #include "scenes/spd/spd.h"
 
 namespace rayshade::spd {
@@ -50,7 +51,7 @@ double normal(std::uint32_t seed) {
   };
   while (true) {
     const double a = uniform(), b = uniform(), r = a * a + b * b;
-    if (r > 0 && r < 1) return a * std::sqrt(-2 * std::log(r) / r);
+    if (r > 0 && r < 1) return a * std::sqrt(-2 * elementary::log(r) / r);
   }
 }
 
@@ -111,8 +112,9 @@ void writeMount(int size, SceneWriter& out) {
   const double up = kRadius * std::sqrt(1.5), down = up / 3, across = 2 * kRadius / std::sqrt(3.0);
   out.sphere(glass, pyramid + Vec3{0, 0, up}, kRadius);
   for (int third = 0; third < 3; ++third) {
-    const double angle = std::acos(-1) * (-0.25 + 2.0 / 3 * third);
-    out.sphere(glass, pyramid + Vec3{across * std::cos(angle), across * std::sin(angle), -down}, kRadius);
+    const double angle = elementary::acos(-1) * (-0.25 + 2.0 / 3 * third);
+    out.sphere(glass, pyramid + Vec3{across * elementary::cos(angle), across * elementary::sin(angle), -down},
+               kRadius);
   }
 
   constexpr std::int32_t kEnd = 1 << kLog2Places;

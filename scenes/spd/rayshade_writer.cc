@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rayshade/base/elementary.h"
+
 namespace rayshade::spd {
 
 namespace {
@@ -33,7 +35,7 @@ MaterialId RayshadeWriter::material(const Material& m) {
 
 void RayshadeWriter::beginCrowd(std::uint64_t primitives) {
   if (!grid_) return;
-  const double side = std::max(1.0, std::round(1.5 * std::cbrt(static_cast<double>(primitives))));
+  const double side = std::max(1.0, std::round(1.5 * elementary::cbrt(static_cast<double>(primitives))));
   out_.write("grid ", Vec3{side, side, side}, '\n');
 }
 

@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 
+#include "rayshade/base/elementary.h"
 #include "scenes/spd/spd.h"
 
 namespace rayshade::spd {
@@ -21,16 +22,17 @@ using Ring = std::array<Vec3, kSides>;
 
 std::array<Ring, kRings> cluster() {
   std::array<Ring, kRings> result;
-  const double fifth = 2 * std::acos(-1) / kSides;
+  const double fifth = 2 * elementary::acos(-1) / kSides;
   const double cosTilt = std::sqrt(0.2), sinTilt = std::sqrt(0.8);  // between two axes of an icosahedron
   for (int ring = 0; ring < kRings; ++ring) {
     // All six pass through the plane z = 0: the first lies in it, the others start there, 36 + 72 k degrees round.
     const double start = ring == 0 ? 0 : fifth * (ring - 0.5);
-    const Vec3 first{std::cos(start), std::sin(start), 0};
-    const Vec3 across{-std::sin(start), std::cos(start), 0};
+    const Vec3 first{elementary::cos(start), elementary::sin(start), 0};
+    const Vec3 across{-elementary::sin(start), elementary::cos(start), 0};
     const Vec3 second = ring == 0 ? across : across * cosTilt + Vec3{0, 0, sinTilt};
     for (int side = 0; side < kSides; ++side) {
-      result[ring][side] = (first * std::cos(fifth * side) + second * std::sin(fifth * side)) * kRingRadius;
+      result[ring][side] =
+          (first * elementary::cos(fifth * side) + second * elementary::sin(fifth * side)) * kRingRadius;
     }
   }
   return result;
@@ -39,8 +41,8 @@ std::array<Ring, kRings> cluster() {
 }  // namespace
 
 void writeRings(int size, SceneWriter& out) {
-  const double halfView = std::acos(-1) / 8;
-  const double depth = 1 / std::sin(halfView);
+  const double halfView = elementary::acos(-1) / 8;
+  const double depth = 1 / elementary::sin(halfView);
   const Vec3 eye{-1, -depth, 0.5};
   out.view({.eye = eye, .lookAt = eye + Vec3{0, 1, 0}});
   for (const Vec3 offset : {Vec3{4, 0, 2.5}, Vec3{-3, 0, 0.5}, Vec3{3, 0, -4.5}}) {
@@ -57,7 +59,7 @@ void writeRings(int size, SceneWriter& out) {
                                     .reflect = 1});
   }
   // The wall behind fills the view with one percent to spare.
-  const double back = (size + 1) * depth, half = (back - eye.y) * std::tan(halfView) * 1.01;
+  const double back = (size + 1) * depth, half = (back - eye.y) * elementary::tan(halfView) * 1.01;
   out.polygon(wall,
               std::array{Vec3{eye.x + half, back, eye.z + half}, Vec3{eye.x - half, back, eye.z + half},
                          Vec3{eye.x - half, back, eye.z - half}, Vec3{eye.x + half, back, eye.z - half}});

@@ -3,8 +3,8 @@
 // At angle a the radius is r = e^(0.15 a) and the centre (r sin a, r cos a, -2 r); the last sphere is at a = 6 pi.
 // Source: Haines, Standard Procedural Databases, version 3; the spiral is the logarithmic one.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <cmath>
 
+#include "rayshade/base/elementary.h"
 #include "scenes/spd/spd.h"
 
 namespace rayshade::spd {
@@ -21,9 +21,9 @@ void writeShells(int size, SceneWriter& out) {
   const int last = kLastTurn * kPerTurn, first = last - size * kPerTurn;
   out.beginCrowd(static_cast<std::uint64_t>(last - first) + 1);
   for (int i = first; i <= last; ++i) {
-    const double angle = 2 * std::acos(-1) * i / kPerTurn;
-    const double radius = std::exp(0.15 * angle);
-    out.sphere(shell, Vec3{std::sin(angle), std::cos(angle), -2} * radius, radius);
+    const double angle = 2 * elementary::acos(-1) * i / kPerTurn;
+    const double radius = elementary::exp(0.15 * angle);
+    out.sphere(shell, Vec3{elementary::sin(angle), elementary::cos(angle), -2} * radius, radius);
   }
   out.endCrowd();
 }

@@ -1,7 +1,8 @@
 #include "scenes/spd/tachyon_writer.h"
 
-#include <cmath>
 #include <numbers>
+
+#include "rayshade/base/elementary.h"
 
 namespace rayshade::spd {
 
@@ -12,7 +13,7 @@ Vec3 mirrored(Vec3 v) { return {-v.x, v.y, v.z}; }
 
 void TachyonWriter::view(const View& view) {
   // Zoom 1 is a picture one unit wide at distance one.
-  const double zoom = 0.5 / std::tan(view.fieldOfView * std::numbers::pi / 360);
+  const double zoom = 0.5 / elementary::tan(view.fieldOfView * std::numbers::pi / 360);
   out_.write("BEGIN_SCENE\nRESOLUTION 512 512\nCAMERA\n  ZOOM ", zoom,
              "\n  ASPECTRATIO 1.0\n  ANTIALIASING 0\n  RAYDEPTH 6\n  CENTER ", mirrored(view.eye),
              "\n  VIEWDIR ", mirrored(normalize(view.lookAt - view.eye)), "\n  UPDIR ", mirrored(view.up),

@@ -4,8 +4,8 @@
 // Source: Aono & Kunii, Botanical Tree Image Generation, IEEE CG&A 4(5), 1984 (angles, lengths of a fork).
 // SPDX-License-Identifier: BSD-3-Clause
 #include <array>
-#include <cmath>
 
+#include "rayshade/base/elementary.h"
 #include "scenes/spd/spd.h"
 
 namespace rayshade::spd {
@@ -26,10 +26,10 @@ struct Frame {
 
 // The frame of a bough; its own fork is turned by a right angle.
 Frame forked(const Frame& parent, const Bough& bough) {
-  const double degree = std::acos(-1) / 180;
-  const double c = std::cos(bough.azimuth * degree), s = std::sin(bough.azimuth * degree);
+  const double degree = elementary::acos(-1) / 180;
+  const double c = elementary::cos(bough.azimuth * degree), s = elementary::sin(bough.azimuth * degree);
   const Vec3 outward = parent.x * c + parent.y * s, sideways = parent.y * c - parent.x * s;
-  const double cosTilt = std::cos(bough.tilt * degree), sinTilt = std::sin(bough.tilt * degree);
+  const double cosTilt = elementary::cos(bough.tilt * degree), sinTilt = elementary::sin(bough.tilt * degree);
   return {sideways, parent.z * sinTilt - outward * cosTilt, parent.z * cosTilt + outward * sinTilt};
 }
 

@@ -148,7 +148,9 @@ void forRandomScenes(const std::function<void(const Seen&, Random&)>& use) {
       const Hit hit = nearestHit(placed->model, placed->region, ray, 0, kInfinity);
       if (!hit.found()) continue;
       ++hits;
-      use({scene, *placed, ray, evaluateSurface(placed->model, hit, ray, placed->settings)}, random);
+      SurfacePoint at;
+      evaluateSurface(placed->model, hit, ray, placed->settings, at);
+      use({scene, *placed, ray, at}, random);
       if (testing::Test::HasFatalFailure()) return;
     }
   }

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstring>
 #include <set>
 
 #include "tests/support/seeded_random.h"
@@ -51,6 +52,28 @@ TEST(Bvh, OrderIsAPermutationOfTheItems) {
   std::sort(order.begin(), order.end());
   ASSERT_EQ(order.size(), items.size());
   for (std::uint32_t i = 0; i < order.size(); ++i) EXPECT_EQ(order[i], i);
+}
+
+TEST(Bvh, IsTheSameForAnyNumberOfThreads) {
+  SeededRandom random(3);
+  std::vector<Bounds> items;
+  for (int i = 0; i < 70000; ++i) {
+    const Vec3 low = random.point(-1, 1);
+    items.push_back({low, low + 0.01 * random.point(0, 1)});
+  }
+  items[5] = kEverywhere;
+  items[40000] = Bounds{};
+  const auto boundsOf = [&](std::uint32_t item) { return items[item]; };
+  const BvhTree alone = buildBvh(items.size(), boundsOf, 1), together = buildBvh(items.size(), boundsOf, 3);
+  EXPECT_EQ(alone.order, together.order);
+  EXPECT_EQ(alone.root, together.root);
+  ASSERT_EQ(alone.nodes.size(), together.nodes.size());
+  for (std::size_t i = 0; i < alone.nodes.size(); ++i) {
+    const BvhNode &one = alone.nodes[i], &other = together.nodes[i];
+    ASSERT_EQ(std::memcmp(one.plane, other.plane, sizeof one.plane), 0) << i;
+    ASSERT_EQ(std::memcmp(one.child, other.child, sizeof one.child), 0) << i;
+  }
+  EXPECT_EQ(alone.inTree + 2, items.size());
 }
 
 TEST(Bvh, UnboundedItemsAreOfferedToEveryRayAndEmptyOnesToNone) {
