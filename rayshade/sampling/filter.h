@@ -20,7 +20,7 @@ namespace rayshade {
 // That of a column of cells, or of a row, up to a factor.
 inline double columnWeight(const PixelFilter& filter, std::int32_t side, std::int32_t column) {
   const double u = -filter.width / 2 + (column + 0.5) * filter.width / side;
-  return filter.gaussian ? std::exp(-u * u / 2) : 1.0;
+  return filter.gaussian ? elementary::exp(-u * u / 2) : 1.0;
 }
 
 inline std::vector<double> filterWeights(const PixelFilter& filter, std::int32_t side) {
