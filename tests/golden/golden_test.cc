@@ -18,6 +18,7 @@ namespace {
 
 struct Feature {
   const char *name, *scene;
+  const char* sampling = "nets";
 };
 
 // In front of every scene; later statements override.
@@ -90,6 +91,13 @@ constexpr Feature kFeatures[] = {
     {"gauss", "sample 3 nojitter filter gauss 2 contrast 0 0 0 sphere red 1 0 0 0"},
     {"jitter", "sample 3 jitter contrast .1 .1 .1 sphere red 1 0 0 0"},
     {"window", "window 10 30 5 30 crop .1 .9 0 1 sphere red 1 0 0 0"},
+    // The bits of the original's strata.
+    {"extended-strata", "sample 2 nojitter contrast 0 0 0 light .7 extended .6 3 -3 4 sphere red .7 0 0 0",
+     "strata"},
+    {"area-strata", "sample 2 nojitter light .7 area 2 -3 4 4 -3 4 2 2 -1 4 2 sphere red .7 0 0 0", "strata"},
+    {"gloss-strata", "sample 2 nojitter sphere mirror 1 0 0 0 texture gloss .8", "strata"},
+    {"lens-strata", "sample 2 nojitter aperture .2 focaldist 4 sphere red 1 0 0 0", "strata"},
+    {"jitter-strata", "sample 3 jitter contrast .1 .1 .1 sphere red 1 0 0 0", "strata"},
 };
 
 class Golden : public testing::TestWithParam<Feature> {};
@@ -99,7 +107,9 @@ TEST_P(Golden, ThePictureIsTheOneThatIsKept) {
   const std::string file = std::string("tests/golden/") + feature.name + ".png";
   Rendered rendered;
   try {
-    rendered = renderSequentially(jobOfText(std::string(kStage) + feature.scene));
+    Job job = jobOfText(std::string(kStage) + feature.scene);
+    job.options.sampling = feature.sampling;
+    rendered = renderSequentially(job);
   } catch (const std::exception& error) {
     FAIL() << error.what();
   }

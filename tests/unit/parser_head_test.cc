@@ -153,7 +153,7 @@ TEST(Parser, ChecksWhatTheCommandLineMayHaveChanged) {
 
 // The last of the statements that contradict each other.
 TEST(Parser, SaysWhereTheHeadIsWrong) {
-  EXPECT_EQ(errorOf("sample 2\n\n sample 9\nsphere 1 0 0 0\n").substr(0, 18), "s.ray:3:9: error: ");
+  EXPECT_EQ(errorOf("sample 2\n\n sample 65\nsphere 1 0 0 0\n").substr(0, 18), "s.ray:3:9: error: ");
   EXPECT_EQ(headError("lookp 1 2 3\neyep 4 5 6\n eyep 1 2 3\nfov 40").substr(0, 18), "s.ray:3:2: error: ");
   EXPECT_EQ(headError("eyep 1 2 3\nscreen 9 9\nlookp 1 2 3").substr(0, 18), "s.ray:3:1: error: ");
   EXPECT_EQ(headError("screen 100 100\nwindow 0 100 0 99").substr(0, 18), "s.ray:2:1: error: ");

@@ -27,7 +27,7 @@ TEST(Range, IsSaidInWords) {
 TEST(Ranges, ArePlacedAtTheNumber) {
   EXPECT_EQ(errorOf("sphere diffuse 1 1 1\n extinct -1 1 0 0 0"),
             "s.ray:2:10: error: a number from 0 to 1 is expected here, not -1");
-  EXPECT_EQ(errorOf("sample 9"), "s.ray:1:8: error: a whole number from 1 to 8 is expected here, not 9");
+  EXPECT_EQ(errorOf("sample 65"), "s.ray:1:8: error: a whole number from 1 to 64 is expected here, not 65");
   EXPECT_EQ(errorOf("fov 40 (90 * 2)"),
             "s.ray:1:8: error: a number between 0 and 180 is expected here, not 180");
   EXPECT_EQ(errorOf("light 1 1e31 1 point 0 0 0"),

@@ -92,10 +92,13 @@ TEST(ScenePlan, SaysHowManySamplesThereAre) {
   EXPECT_EQ(planOf(black).eyeRaysAtLeast, 52u * 4 + 140 + 14);
   EXPECT_EQ(renderSequentially(black).counts.primaryRays, planOf(black).eyeRaysAtLeast);
   // Contrast everywhere.
-  const Job all = jobOfText(kPicture + "contrast 0 0 0 " + scene +
+  const Job all = jobOfText(kPicture + "contrast .01 .01 .01 " + scene +
                             "white 1 0 0 0 texture blotch .5 black scale .01 .01 .01");
   EXPECT_EQ(planOf(all).eyeRaysAtMost, 16u * 12 * 4 + 14);
   EXPECT_LE(renderSequentially(all).counts.primaryRays, planOf(all).eyeRaysAtMost);
+  const Job every = jobOfText(kPicture + "contrast 0 0 0 " + scene + "black 1 0 0 0");
+  EXPECT_EQ(planOf(every).eyeRaysAtLeast, 16u * 12 * 4);
+  EXPECT_EQ(renderSequentially(every).counts.primaryRays, 16u * 12 * 4);
   // One sample in a pixel, or no pixel that is not on the border.
   for (const char* picture : {"screen 16 12 sample 1 ", "screen 2 50 fov 1 sample 3 "}) {
     const Job job = jobOfText(picture + scene + "white 1 0 0 0");
