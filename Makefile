@@ -16,6 +16,7 @@
 #   make benches      the other measuring programs into bin/bench/
 #   make bench-embree bin/bench/embree_rate: rays per second beside Embree (Debian: libembree-dev)
 #   make bench-splitting     what threads and tasks cost against one thread, with the goals; then start-up and memory
+#   make calibrate    BUILD/costs: what a ray, a test, a message costs on this machine, for rayshade-simulate
 #   make experiments  the schemes of the paper measured over PVM, into docs/experiments/ (7 minutes);
 #                     QUICK=1: small pictures, into BUILD/experiments (2 minutes)
 #   make prove-adding a new primitive in a copy of this tree: what it costs, and what is said when something is forgotten
@@ -57,14 +58,14 @@ sanitized := SAN=address,undefined OPTIMIZE=$(or $(OPTIMIZE),-O1) CXX="$(CLANG)"
 objects = $(patsubst %.cc,$(BUILD)/%.o,$(1))
 find_sources = $(sort $(shell find $(1) -name '*.cc'))
 
-not_core := rayshade/program/main.cc rayshade/program/error_main.cc rayshade/program/version.cc
+not_core := rayshade/program/main.cc rayshade/program/error_main.cc rayshade/program/events_main.cc rayshade/program/version.cc
 core := $(call objects,$(filter-out $(not_core),$(call find_sources,rayshade)))
 # The commit is known to this one object, which is compiled anew when it is another.
 version := $(BUILD)/rayshade/program/version.o
 commit := $(shell [ -e .git ] && git describe --always --dirty --abbrev=12 --exclude='*' 2>/dev/null)
 spd := $(call objects,$(filter-out scenes/spd/main.cc,$(call find_sources,scenes/spd)))
 pvm_door := $(call objects,$(filter-out pvm/link/host_file.cc,$(call find_sources,pvm/link)))
-pvm_programs := $(call objects,pvm/program/main.cc pvm/program/host_program.cc)
+pvm_programs := $(call objects,$(addprefix pvm/program/,main.cc host_program.cc simulate_program.cc task_render.cc))
 tasks := $(filter-out $(pvm_door) $(pvm_programs),$(call objects,$(call find_sources,pvm)))
 oracle := $(call objects,$(call find_sources,tests/support/oracle))
 support := $(filter-out $(oracle),$(call objects,$(call find_sources,tests/support)))
@@ -83,14 +84,14 @@ embree_bench := tests/bench/embree_rate.cc
 benches := $(patsubst tests/bench/%.cc,$(BIN)/bench/%,$(filter-out $(embree_bench),$(call find_sources,tests/bench)))
 
 roles := host voxel-trace pyramid-trace shade
-programs := $(BIN)/rayshade $(BIN)/rayshade-error $(BIN)/spd $(roles:%=$(BIN)/rayshade-%)
+programs := $(BIN)/rayshade $(BIN)/rayshade-error $(BIN)/rayshade-events $(BIN)/rayshade-simulate $(BIN)/spd $(roles:%=$(BIN)/rayshade-%)
 # The programs write what is to be read about them.
-documented := rayshade rayshade-error rayshade-host spd
+documented := rayshade rayshade-error rayshade-events rayshade-host rayshade-simulate spd
 pages := $(documented:%=$(BIN)/share/man/man1/%.1) $(patsubst %,$(BIN)/share/man/man1/rayshade-%.1,$(filter-out host,$(roles)))
 completions := $(documented:%=$(BIN)/share/bash-completion/completions/%)
 test_programs := $(BIN)/rayshade-tests $(BIN)/link-tests $(BIN)/pvm-tests
 
-.PHONY: all man demo docs check check-sanitized check-threads check-processors build-tests test guarded install install-files uninstall fuzz fuzzers bench benches bench-splitting bench-embree experiments prove-adding graph format clean packages always
+.PHONY: all man demo docs check check-sanitized check-threads check-processors build-tests test guarded install install-files uninstall fuzz fuzzers bench benches bench-splitting bench-embree calibrate experiments prove-adding graph format clean packages always
 all: $(programs) $(pages) $(completions)
 man: $(pages)
 
@@ -144,12 +145,14 @@ $(BUILD)/threaded/program: $(BUILD)/rayshade/program/main.o $(version) $(threade
 	$(quietly)$(CLANG) -fsanitize=thread $(filter %.o,$^) $(filter %.a,$^) $(LIBRARIES) -o $@
 $(BIN)/rayshade-error: $(BUILD)/rayshade/program/error_main.o $(version) $(BUILD)/libcore.a
 	$(call link)
+$(BIN)/rayshade-events: $(BUILD)/rayshade/program/events_main.o $(version) $(BUILD)/libcore.a
+	$(call link)
 $(BIN)/spd: $(BUILD)/scenes/spd/main.o $(version) $(BUILD)/libspd.a $(BUILD)/libcore.a
 	$(call link)
 $(BIN)/rayshade-host: $(pvm_programs) $(version) $(pvm_door) $(BUILD)/libtasks.a $(BUILD)/libcore.a
 	$(call link,-lpvm3)
 # The role of a task is the name under which it was started: one program, several names.
-$(BIN)/rayshade-voxel-trace $(BIN)/rayshade-pyramid-trace $(BIN)/rayshade-shade: $(BIN)/rayshade-host
+$(BIN)/rayshade-simulate $(BIN)/rayshade-voxel-trace $(BIN)/rayshade-pyramid-trace $(BIN)/rayshade-shade: $(BIN)/rayshade-host
 	$(call say,link $@)
 	$(quietly)ln -f $< $@
 $(BIN)/share/man/man1/%.1: $(BIN)/%
@@ -211,6 +214,9 @@ bench-splitting: all benches
 	@tests/bench/plot_splitting
 	@tests/bench/start_up || true
 	@tests/bench/memory || true
+
+calibrate: all
+	@tests/bench/calibrate $(BUILD)/costs
 
 experiments: all
 	@PYTHONDONTWRITEBYTECODE=1 tests/bench/experiments/run $(BIN) $(if $(QUICK),$(BUILD)/experiments --quick,docs/experiments)

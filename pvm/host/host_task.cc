@@ -2,6 +2,7 @@
 #include "pvm/host/host_task.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "pvm/host/shipping.h"
 #include "pvm/messages/task_context.h"
@@ -47,6 +48,14 @@ HostTask::HostTask(Machine& machine, SceneReader readScene, Survey survey, const
   summary_.objects = survey_.objects;
   summary_.host.placement = {Role::host, 0, machine.hosts()[0].name, {}};
   summary_.host.task = machine.self();
+}
+
+void HostTask::observe(std::size_t most, std::function<void(const EventLane&)> lane) {
+  record_ = std::make_unique<EventRecord>(most);
+  outbox_.record = record_.get();
+  mostEvents_ = most;
+  lane_ = std::move(lane);
+  roster_.onDeath = [this](TaskId task) { outbox_.note(EventKind::death, task, 0, 0, 0); };
 }
 
 // ---- the picture
@@ -116,7 +125,9 @@ HostSummary HostTask::finish() {
     slave.heard = machine_.now();
     if (slave.task != kNobody) outbox_.post(slave.task, Finish{});
   }
-  auto missing = [](const Slave& s) { return s.task != kNobody && !s.reported; };
+  auto missing = [&](const Slave& s) {
+    return s.task != kNobody && !(s.reported && (s.observed || !record_));
+  };
   const double deadline = machine_.now() + options_.killAfter;
   while (std::ranges::any_of(roster_.slaves(), missing) && machine_.now() < deadline) takeEvents(1);
   // Those who have reported leave by themselves.
@@ -128,7 +139,11 @@ HostSummary HostTask::finish() {
     summary_.tasks.push_back(slave.summary);
   }
   summary_.successions = roster_.successions();
-  summary_.host.report = reportOf(outbox_.traffic);
+  addTo(summary_.host.report, outbox_.traffic);
+  addTo(summary_.host.report, machine_.usage());
+  if (record_)
+    lane_({static_cast<std::int32_t>(machine_.self()), "host", 0, summary_.host.placement.host, 0,
+           record_->log()});
   return summary_;
 }
 
@@ -139,7 +154,11 @@ void HostTask::reconfigure() {
   const double begin = machine_.now();
   rendering_ = false;
   do {
-    roster_.startMissing();
+    for (const TaskId begun : roster_.startMissing()) {
+      if (!record_) continue;
+      roster_.find(begun)->observedFrom = machine_.now();
+      outbox_.post(begun, Observe{static_cast<std::uint32_t>(mostEvents_)});
+    }
     enlist(roster_.slaves(), configuration_.directory);
     ship();
   } while (!bringImages() || !roster_.complete() || !configure());
@@ -210,7 +229,11 @@ bool HostTask::configure() {
 void HostTask::takeEvents(double patience) {
   checkInterruption();
   outbox_.flush();
-  if (auto first = machine_.wait(patience)) {
+  const double begin = machine_.now();
+  auto first = machine_.wait(patience);
+  if (record_)
+    record_->span(issuing_.inFlight() > 0 ? EventKind::wait : EventKind::idle, begin, machine_.now());
+  if (first) {
     handle(*first);
     while (auto event = machine_.poll()) handle(*event);
   }
@@ -224,7 +247,7 @@ void HostTask::handle(const LinkEvent& event) {
       if (slave != nullptr) {
         slave->heard = machine_.now();
         slave->pinged = false;
-        receivePacket(*this, event.task, event.bytes, outbox_.traffic);
+        receive(event);
       } else {
         ++outbox_.traffic.stale;  // last words of the dead
       }
@@ -240,6 +263,17 @@ void HostTask::handle(const LinkEvent& event) {
     case LinkEvent::Kind::jobDone:
       break;  // the host has no threads
   }
+}
+
+void HostTask::receive(const LinkEvent& event) {
+  const std::uint64_t before = outbox_.traffic.messagesIn;
+  const double begin = machine_.now();
+  receivePacket(*this, event.task, event.bytes, outbox_.traffic);
+  if (!record_) return;
+  const auto from = static_cast<std::int32_t>(event.task);
+  record_->add({nanoseconds(begin), nanoseconds(machine_.now()), EventKind::decode, 0, from,
+                packetsFrom_[from]++, static_cast<std::uint32_t>(outbox_.traffic.messagesIn - before),
+                event.bytes.size()});
 }
 
 void HostTask::on(TaskId from, ItemsTaken) {
@@ -262,8 +296,24 @@ void HostTask::on(TaskId from, Report message) {
   }
 }
 
+// Two bounds for what its clock is behind: Observe was on its way, and so was this.
+void HostTask::on(TaskId from, Observed message) {
+  Slave* slave = roster_.find(from);
+  if (slave == nullptr || !record_) return;
+  slave->observed = true;
+  const double least = slave->observedFrom - message.begun, most = machine_.now() - message.now;
+  const double behind = least <= 0 && most >= 0 ? 0 : (least + most) / 2;  // 0: it is the same clock
+  lane_({static_cast<std::int32_t>(from), roleName(slave->placement.role), slave->placement.index,
+         slave->placement.host, std::llround(1e9 * behind), std::move(message.log)});
+}
+
 void HostTask::on(TaskId from, Load message) {
   if (Slave* slave = roster_.find(from)) slave->busy = message.busy;
+}
+
+void HostTask::on(TaskId from, const TileDone& message) {
+  outbox_.note(EventKind::taken, from, message.number, message.colors.samples, 0);
+  outbox_.traffic.refused += !issuing_.arrive(message);
 }
 
 void HostTask::on(TaskId, const SampleColors& message) {

@@ -16,6 +16,7 @@
 #include "pvm/host/issuing.h"
 #include "pvm/host/roster.h"
 #include "pvm/messages/inbox.h"
+#include "rayshade/events/event_file.h"
 #include "rayshade/space/survey.h"
 
 namespace rayshade {
@@ -23,7 +24,7 @@ namespace rayshade {
 class HostTask {
  public:
   using Accepted = TypeList<ItemsTaken, Ready, Report, Pong, Load, Answer, SampleColors, TileDone,
-                            PyramidWanted, ImageTaken>;
+                            PyramidWanted, ImageTaken, Observed>;
   // Reads the scene once more, from the beginning, into a sink.
   using SceneReader = std::function<void(SceneSink&)>;
 
@@ -31,10 +32,14 @@ class HostTask {
   HostTask(Machine& machine, SceneReader readScene, Survey survey, const SceneSettings& settings,
            const HostOptions& options);
 
+  // Events are wanted: so many of each task at most, in lanes that are handed on when their tasks end, the host's at last.  To be
+  // called before any frame.
+  void observe(std::size_t most, std::function<void(const EventLane&)> lane);
   // Renders a frame of the animation; rows from top to bottom.  Throws HostError, and what the scene reader throws.
   void renderFrame(const View& view, const PictureSpec& picture, std::int32_t frame,
                    const std::function<void(const std::vector<Color>&)>& row,
                    const std::function<void(const Completed&)>& progress = {});
+  const Traffic& traffic() const { return outbox_.traffic; }
   // Ends the tasks and gathers their reports.
   HostSummary finish();
 
@@ -42,12 +47,13 @@ class HostTask {
   void on(TaskId from, ItemsTaken);
   void on(TaskId from, Ready message);
   void on(TaskId from, Report message);
+  void on(TaskId from, Observed message);
   void on(TaskId, Pong) {}
   void on(TaskId from, ImageTaken message) { outbox_.traffic.refused += !images_.arrive(from, message); }
   void on(TaskId from, Load message);
   void on(TaskId, Answer message) { issuing_.arrive(message.record, message.color); }
   void on(TaskId, const SampleColors& message);
-  void on(TaskId, const TileDone& message) { outbox_.traffic.refused += !issuing_.arrive(message); }
+  void on(TaskId from, const TileDone& message);
   void on(TaskId from, PyramidWanted) { issuing_.wanted(from); }
 
  private:
@@ -59,6 +65,7 @@ class HostTask {
   void sendWeights();
   void takeEvents(double patience);
   void handle(const LinkEvent& event);
+  void receive(const LinkEvent& packet);
 
   Machine& machine_;
   SceneReader readScene_;
@@ -72,6 +79,11 @@ class HostTask {
   bool rendering_ = false;  // else tasks are given time to read and to build
   double weighed_ = 0;      // when the weights of shade tasks were sent last
   HostSummary summary_;
+
+  std::unique_ptr<EventRecord> record_;  // null: nothing is noted
+  std::size_t mostEvents_ = 0;
+  std::function<void(const EventLane&)> lane_;
+  std::unordered_map<std::int32_t, std::uint32_t> packetsFrom_;
 };
 
 }  // namespace rayshade

@@ -122,6 +122,8 @@ void Issuing::issueTiles() {
       const TileWork work{static_cast<std::uint32_t>(tilesInFlight_.next()), *tile};
       tilesInFlight_.add(*tile);
       pixelsInFlight_ += pixelsOf(*tile);
+      outbox_.note(EventKind::given, wanting_.front(), work.number, static_cast<std::uint32_t>(tile->x),
+                   static_cast<std::uint64_t>(tile->y));
       outbox_.post(wanting_.front(), work);
     } else {
       const PrimaryRays work = takeSamples(Sampler::kMany);

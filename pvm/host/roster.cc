@@ -63,8 +63,9 @@ Slave* Roster::find(TaskId task) {
   return found == byTask_.end() ? nullptr : &slaves_[found->second];
 }
 
-void Roster::startMissing() {
-  if (complete()) return;
+std::vector<TaskId> Roster::startMissing() {
+  std::vector<TaskId> begun;
+  if (complete()) return begun;
   const std::vector<HostInfo> hosts = machine_.hosts();
   if (hosts.empty()) throw HostError("no host of the virtual machine is left");
   const std::vector<Placement> mapped = mapProcesses(hosts, wishes_);
@@ -83,7 +84,9 @@ void Roster::startMissing() {
     slave.pinged = false;
     byTask_[static_cast<std::int32_t>(spawned.task)] = i;
     machine_.watch(spawned.task);
+    begun.push_back(spawned.task);
   }
+  return begun;
 }
 
 // Throws HostError when a place is not to be filled again.
@@ -109,6 +112,7 @@ Spawned Roster::spawn(Slave& slave, const std::vector<HostInfo>& hosts) {
 
 void Roster::bury(Slave& slave, const std::string& how) {
   if (slave.task == kNobody) return;
+  if (onDeath && !slave.reported) onDeath(slave.task);
   lastDeath_ = std::string(programName(slave.placement.role)) + " on " + slave.placement.host + ": " + how;
   slave.earlyDeaths = slave.ready ? 0 : slave.earlyDeaths + 1;
   byTask_.erase(static_cast<std::int32_t>(slave.task));

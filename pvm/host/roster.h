@@ -6,6 +6,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <functional>
 #include <map>
 
 #include "pvm/host/summary.h"
@@ -25,6 +26,8 @@ struct Slave {
   bool pinged = false;    // since then
   double busy = 0;        // share of its time, as it said last
   bool reported = false;  // its last words
+  bool observed = false;  // the events that it noted
+  double observedFrom = 0;
   TaskSummary summary;
 };
 
@@ -43,13 +46,15 @@ class Roster {
   std::vector<Slave*> slavesOf(Role role);
   Slave* find(TaskId task);  // null: it is dead, or no slave
 
+  std::function<void(TaskId)> onDeath;  // may be empty
+
   bool complete() const { return byTask_.size() == slaves_.size(); }
   bool deserted() const { return byTask_.empty(); }
   int successions() const { return successions_; }
 
   // Starts a task for every place that has none, first where the mapping puts it, then wherever there is a host.  Throws
-  // HostError when none can be started or too many have died.
-  void startMissing();
+  // HostError when none can be started or too many have died.  Says which tasks have begun.
+  std::vector<TaskId> startMissing();
   void bury(Slave& slave, const std::string& how);
   void buryHost(const std::string& host);  // all that stood there
   // Pings who is silent; kills and buries who does not answer either, after so many seconds.

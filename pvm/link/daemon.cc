@@ -7,8 +7,6 @@
 #include <pvm3.h>
 #include <sys/socket.h>
 
-#include <chrono>
-
 namespace rayshade {
 namespace {
 
@@ -18,10 +16,6 @@ constexpr int kSilenceSeconds = 10;       // a machine that acknowledges nothing
 }  // namespace
 
 int daemonOf(TaskId task) { return pvm_tidtohost(number(task)); }
-
-double steadySeconds() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 int Daemon::check(int code, const char* what) {
   if (code != PvmSysErr) return code;

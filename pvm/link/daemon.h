@@ -34,9 +34,6 @@ constexpr int number(TaskId task) { return static_cast<int>(task); }
 int daemonOf(TaskId task);                               // of the machine on which the task runs
 inline bool isDaemon(int sender) { return sender < 0; }  // a daemon's id has the top bit set
 
-// Seconds of a clock that only goes forward.
-double steadySeconds();
-
 class Daemon {
  public:
   // What libpvm has answered; `what` was called.  Throws LinkLost when the daemon is gone.

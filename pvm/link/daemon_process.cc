@@ -21,6 +21,7 @@
 
 #include "pvm/link/daemon.h"
 #include "pvm/link/daemon_files.h"
+#include "rayshade/base/clock.h"
 #include "rayshade/base/interruption.h"
 
 namespace rayshade {

@@ -40,12 +40,21 @@ constexpr const char* programName(Role role) {
   return "";
 }
 
+// Of a role alone: voxel-trace.
+inline std::string roleName(Role role) { return std::string(programName(role)).substr(9); }
+
 // What comes in.
 struct LinkEvent {
   enum class Kind : std::uint8_t { packet, taskExit, hostExit, hostJoined, jobDone } kind = Kind::packet;
   TaskId task = kNobody;  // the sender, or the task that is gone
   std::string host;       // of hostExit and hostJoined
   Bytes bytes;            // of a packet
+};
+
+// What a task has taken of its machine so far.
+struct Usage {
+  double cpuSeconds = 0;
+  std::uint64_t peakMemory = 0;  // bytes
 };
 
 class Link {
@@ -59,6 +68,8 @@ class Link {
   virtual std::optional<LinkEvent> wait(double seconds) = 0;  // nothing: the time is over
   virtual void watch(TaskId task) = 0;                        // a taskExit event will tell of its death
   virtual double now() const = 0;                             // seconds of a clock that only goes forward
+
+  virtual Usage usage() const = 0;
 
   // ---- threads of this task, beside the one that calls
 

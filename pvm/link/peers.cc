@@ -4,6 +4,7 @@
 #include <set>
 
 #include "pvm/link/daemon.h"
+#include "rayshade/base/clock.h"
 
 namespace rayshade {
 

@@ -3,6 +3,7 @@
 #include "pvm/link/pvm_link.h"
 
 #include <pvm3.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <cmath>
@@ -130,6 +131,16 @@ int PvmLink::receiveOrWake(double seconds) {
   sockets.push_back({threads_.descriptor(), POLLIN, 0});
   ::poll(sockets.data(), sockets.size(), static_cast<int>(std::min(std::ceil(seconds * 1000), 1e9)));
   return daemon_.check(pvm_nrecv(-1, -1), "nrecv");
+}
+
+Usage PvmLink::usage() const {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
+  return {seconds(usage.ru_utime) + seconds(usage.ru_stime),
+          static_cast<std::uint64_t>(usage.ru_maxrss) * 1024};
 }
 
 void PvmLink::watch(TaskId task) {

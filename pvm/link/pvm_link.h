@@ -16,6 +16,7 @@
 #include "pvm/link/routes.h"
 #include "pvm/link/spawning.h"
 #include "pvm/link/task_output.h"
+#include "rayshade/base/clock.h"
 
 namespace rayshade {
 
@@ -34,6 +35,7 @@ class PvmLink final : public Machine {
   std::optional<LinkEvent> wait(double seconds) override;
   void watch(TaskId task) override;
   double now() const override { return steadySeconds(); }
+  Usage usage() const override;  // of the process
   unsigned cores() const override { return coreCount(); }
   void useThreads(unsigned threads) override { threads_.use(threads); }
   void run(Job job) override { threads_.run(std::move(job)); }

@@ -20,6 +20,7 @@
 #include <utility>
 
 #include "pvm/link/daemon.h"
+#include "rayshade/base/clock.h"
 #include "rayshade/base/interruption.h"
 
 namespace rayshade {

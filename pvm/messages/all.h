@@ -4,8 +4,8 @@
 //   version u8 | epoch u32 | message*        message = tag u8, fields
 // See docs/wire-format.md.  The tasks and their messages are those of Reinhard & Jansen, figures 2 and 3.
 //
-// To add a message: its struct, its serialize() and its name in the list at the end, all in control.h, cells.h,
-// images.h or rays.h; in the task that receives it, `Accepted` and a handler on(from, message); a row in docs/wire-format.md.
+// To add a message: its struct, its serialize() and its name in the list at the end, all in one of the
+// headers below; in the task that receives it, `Accepted` and a handler on(from, message); a row in docs/wire-format.md.
 // The compiler and wire_format_test say what is missing.
 //
 //   isFact     whether it is a fact or work
@@ -17,6 +17,7 @@
 
 #include "pvm/messages/cells.h"
 #include "pvm/messages/control.h"
+#include "pvm/messages/events.h"
 #include "pvm/messages/images.h"
 #include "pvm/messages/rays.h"
 
@@ -58,11 +59,15 @@ template <class... A, class... B, class... Rest>
 struct InOrderOfTags<TypeList<A...>, TypeList<B...>, Rest...> : InOrderOfTags<TypeList<A..., B...>, Rest...> {
 };
 
-using AllMessages = InOrderOfTags<ControlMessages, CellMessages, RayMessages, ImageMessages>::Type;
+using AllMessages =
+    InOrderOfTags<ControlMessages, CellMessages, RayMessages, ImageMessages, EventMessages>::Type;
 
 // The compiler names what is missing.
 static_assert((AllMessages::forEach([]<Message M>() {}), true));
 
-inline constexpr std::uint8_t kWireVersion = 7;
+// The names of all messages, by tag.
+std::vector<std::string> messageNames();
+
+inline constexpr std::uint8_t kWireVersion = 8;
 
 }  // namespace rayshade

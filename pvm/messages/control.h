@@ -115,6 +115,7 @@ struct Report {
   std::uint64_t modelBytes = 0;  // its share of the scene, with accelerators
   std::uint64_t peakMemory = 0;  // of the process, bytes
   double busySeconds = 0, idleSeconds = 0, cpuSeconds = 0;
+  double waitSeconds = 0;  // of the idle ones, those with something in hand
   CacheCounts cache;
   CacheCounts shadowCache;          // of those, what shadow rays asked for (look-ups only)
   std::uint64_t pyramids = 0;       // traced
@@ -182,7 +183,8 @@ template <class Archive>
 void serialize(Archive& archive, Report& m) {
   archive(m.counts, m.combined, m.messagesIn, m.messagesOut, m.packetsIn, m.packetsOut, m.bytesIn, m.bytesOut,
           m.refused, m.stale, m.peakQueue, m.modelBytes, m.peakMemory, m.busySeconds, m.idleSeconds,
-          m.cpuSeconds, m.cache, m.shadowCache, m.pyramids, m.pyramidRays, m.forwardedRays, m.cellsServed);
+          m.cpuSeconds, m.waitSeconds, m.cache, m.shadowCache, m.pyramids, m.pyramidRays, m.forwardedRays,
+          m.cellsServed);
 }
 
 template <class Archive>

@@ -8,6 +8,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <utility>
+
 #include "pvm/messages/inbox.h"
 
 namespace rayshade {
@@ -20,24 +22,58 @@ inline constexpr double kPatience = 1.0;  // seconds of sleep when nothing comes
 // A task has: receive(LinkEvent), bool work(until) that says whether anything is left to do, flush(), finished() and
 // noteIdle(seconds).
 template <class Task>
+class TaskLoop {
+ public:
+  TaskLoop(Task& task, Link& link) : task_(task), link_(link), emptied_(link.now()) {}
+
+  // Takes one event in, or works a little.  Answers how long the task sleeps then unless something comes; 0: not at all.
+  double turn() {
+    if (const std::optional<LinkEvent> event = link_.poll()) {
+      receive(*event);
+      return 0;
+    }
+    const Sleep slept = std::exchange(sleep_, Sleep::none);
+    if (slept == Sleep::holding) return letOut(false);  // nothing has come
+    if (slept == Sleep::resting) emptied_ = link_.now();
+    const bool more = task_.work(link_.now() + kWorkSlice);
+    if (link_.now() - emptied_ >= kMostHeldSeconds) return letOut(more);
+    if (more) return 0;
+    sleep_ = Sleep::holding;
+    return kHoldSeconds;
+  }
+  void receive(const LinkEvent& event) {
+    if (sleep_ == Sleep::resting) emptied_ = link_.now();
+    sleep_ = Sleep::none;
+    task_.receive(event);
+  }
+
+ private:
+  enum class Sleep : std::uint8_t { none, holding, resting };
+
+  double letOut(bool more) {
+    task_.flush();
+    emptied_ = link_.now();
+    if (more) return 0;
+    sleep_ = Sleep::resting;
+    return kPatience;
+  }
+
+  Task& task_;
+  Link& link_;
+  double emptied_;  // since then something may have gathered
+  Sleep sleep_ = Sleep::none;
+};
+
+template <class Task>
 void runTask(Task& task, Link& link) {
-  const auto sleep = [&](double seconds) {
-    const double before = link.now();
-    const std::optional<LinkEvent> event = link.wait(seconds);
-    task.noteIdle(link.now() - before);
-    if (event) task.receive(*event);
-    return event.has_value();
-  };
-  double emptied = link.now();  // since then something may have gathered
+  TaskLoop<Task> loop(task, link);
   while (!task.finished()) {
-    while (auto event = link.poll()) task.receive(*event);
-    if (task.finished()) break;
-    const bool more = task.work(link.now() + kWorkSlice);
-    const bool held = link.now() - emptied < kMostHeldSeconds;
-    if (held && (more || sleep(kHoldSeconds))) continue;
-    task.flush();
-    if (!more) sleep(kPatience);
-    emptied = link.now();
+    const double patience = loop.turn();
+    if (patience == 0 || task.finished()) continue;
+    const double before = link.now();
+    const std::optional<LinkEvent> event = link.wait(patience);
+    task.noteIdle(link.now() - before);
+    if (event) loop.receive(*event);
   }
   task.flush();
 }

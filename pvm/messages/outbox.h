@@ -29,12 +29,13 @@ class Outbox {
                   "this is not in the list of messages: append it to the list at the end of the file in "
                   "pvm/messages where it stands");
     Open& open = packetTo(to);
+    const std::size_t before = open.bytes.size();
     {
       Writer writer(open.bytes);
       writer(M::tag);
       serializeInPacket(writer, const_cast<M&>(message), open.memory);  // a Writer reads only
     }
-    sendIfFull(open);
+    posted(open, M::tag, open.bytes.size() - before);
   }
 
   // What is the same for all is encoded once.
@@ -46,7 +47,7 @@ class Outbox {
     for (const TaskId to : tasks) {
       Open& open = packetTo(to);
       open.bytes.insert(open.bytes.end(), encoded.begin(), encoded.end());
-      sendIfFull(open);
+      posted(open, M::tag, encoded.size());
     }
   }
 
@@ -63,13 +64,24 @@ class Outbox {
     epoch_ = epoch;
   }
 
+  // Notes an event of now, if a record is kept.
+  void note(EventKind kind, TaskId peer, std::uint32_t number, std::uint32_t count, std::uint64_t amount) {
+    if (record != nullptr)
+      record->at(link_.now(), kind, static_cast<std::int32_t>(peer), number, count, amount);
+  }
+
   Traffic traffic;
+  EventRecord* record = nullptr;  // null: nothing is recorded
 
  private:
   struct Open {
     TaskId to = kNobody;
     Bytes bytes;
     PacketMemory memory;
+    struct Content {
+      std::uint32_t messages = 0, bytes = 0;
+    };
+    std::array<Content, AllMessages::size> contents{};  // of the open packet by tag, if a record is kept
   };
   Open& packetTo(TaskId to) {
     if (last_ == nullptr || last_->to != to) {
@@ -83,22 +95,31 @@ class Outbox {
     }
     return *last_;
   }
-  void sendIfFull(Open& open) {
+  void posted(Open& open, std::uint8_t tag, std::size_t bytes) {
     ++traffic.messagesOut;
+    if (record != nullptr) {
+      ++open.contents[tag].messages;
+      open.contents[tag].bytes += static_cast<std::uint32_t>(bytes);
+    }
     if (open.bytes.size() >= kFull) send(open);
   }
   void send(Open& open) {
+    const double begin = record != nullptr ? link_.now() : 0;
     traffic.bytesOut += open.bytes.size();
     ++traffic.packetsOut;
     link_.send(open.to, open.bytes);
+    if (record != nullptr) recordPacket(open, begin);
     open.bytes.clear();
     if (open.bytes.capacity() > 2 * kFull) open.bytes = Bytes{};  // one large message does not stay in memory
   }
+
+  void recordPacket(Open& open, double begin);
 
   Link& link_;
   Epoch epoch_{};
   std::unordered_map<std::int32_t, Open> open_;  // node-based: last_ stays valid
   Open* last_ = nullptr;
+  std::unordered_map<std::int32_t, std::uint32_t> packetsTo_;  // that went while a record was kept
 };
 
 }  // namespace rayshade

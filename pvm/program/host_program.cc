@@ -4,45 +4,21 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <cinttypes>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 
-#include "pvm/host/host_task.h"
 #include "pvm/link/pvm_link.h"
 #include "pvm/link/spawning.h"
-#include "pvm/program/host_options.h"
-#include "pvm/program/task_table.h"
+#include "pvm/link/virtual_machine.h"
+#include "pvm/program/task_render.h"
 #include "pvm/schedule/plan.h"
 #include "rayshade/base/crew.h"
-#include "rayshade/base/interruption.h"
 #include "rayshade/base/memory.h"
 #include "rayshade/program/command_line.h"
-#include "rayshade/program/frame_files.h"
-#include "rayshade/program/output_file.h"
-#include "rayshade/program/progress.h"
-#include "rayshade/program/run.h"
 
 namespace rayshade {
 namespace {
-
-// The first pass: how large the scene is, and what it uses.
-class FirstPass final : public SceneSink {
- public:
-  void surface(SurfaceId id, const Surface& surface) override { features.surface(id, surface); }
-  void node(NodeId id, SceneNode node) override {
-    features.count(node);
-    survey.node(id, std::move(node));
-  }
-  void object(SceneObject object) override {
-    features.count(object);
-    survey.object(std::move(object));
-  }
-  void endOfStatement() override { survey.endOfStatement(); }
-
-  SurveySink survey{{}};
-  FeatureSink features;
-};
 
 bool regularFile(int descriptor) {
   struct stat status {};
@@ -79,102 +55,35 @@ HostMemories memoriesOf(const std::vector<HostLine>& lines, const std::string& o
   return memories;
 }
 
-// What needs memory, for the message when there is not enough.
-struct Need {
-  const char* what = "to read the scene";
-  FirstPass pass;
+class PvmStage final : public Stage {
+ public:
+  explicit PvmStage(const MachineOptions& options) : options_(options) {}
 
-  std::string story() const {
-    return std::string(what) + ": the scene has " + std::to_string(pass.features.features().shapeCount()) +
-           " shapes so far; " + memoryOfProcess();
+  std::vector<HostInfo> planned() override { return plannedHosts(lines()); }
+  Machine& start() override {
+    machine_.emplace(options_);
+    for (const std::string& host : machine_->missingHosts())
+      std::fprintf(stderr, "rayshade-host: warning: host %s did not join\n", host.c_str());
+    return link_.emplace();
   }
+  unsigned cores() override { return coreCount(); }
+  HostMemories memories(const std::string& ownName) override { return memoriesOf(lines(), ownName); }
+  std::string console() override {
+    lines();  // a wrong host file is found before anything is written
+    return wasSpawned() && !regularFile(STDOUT_FILENO) ? "the pvm console" : "";
+  }
+
+ private:
+  const std::vector<HostLine>& lines() {
+    if (!lines_) lines_ = hostLines(options_);
+    return *lines_;
+  }
+
+  const MachineOptions& options_;
+  std::optional<std::vector<HostLine>> lines_;
+  std::optional<VirtualMachine> machine_;
+  std::optional<PvmLink> link_;
 };
-
-int run(HostProgramOptions& options, Need& need) {
-  // The first pass finds all that is wrong with the scene before anything is started.
-  FirstPass& pass = need.pass;
-  SceneHead head = parseScene(options.render.parse, pass);
-  applyOptions(options.render, head);
-  Survey survey = pass.survey.survey();
-  if (survey.objects == 0)
-    throw SceneError(sceneName(options.render) + ": error: there is nothing to be rendered");
-  const View view = *viewOf(head.camera, head.picture);
-  const SceneWork work = sceneWork(scenePlan(pass.features.features(), head), survey.objects);
-  const std::vector<HostLine> lines = hostLines(options.machine);
-  if (options.plan) {
-    const std::vector<HostInfo> hosts = plannedHosts(lines);
-    options.host.wishes.memory = memoriesOf(lines, hosts[0].name);
-    const std::string why =
-        applySchedule(options, {static_cast<std::uint32_t>(hosts.size()), coreCount()}, survey.bytes);
-    if (!why.empty()) std::printf("schedule        auto: %s\n", why.c_str());
-    std::fputs(describePlan(hosts, options.host, std::move(survey), {view, head.picture}, head.settings, work)
-                   .c_str(),
-               stdout);
-    return 0;
-  }
-  const PixelArea area = *pixelArea(head.picture);
-  const FrameFiles files(options.render, head,
-                         wasSpawned() && !regularFile(STDOUT_FILENO) ? "the pvm console" : "");
-  const bool quiet = options.render.quiet || head.report.quiet;
-
-  ParseOptions again = options.render.parse;
-  again.warn = nullptr;
-  again.print = nullptr;
-  const std::int32_t first = head.picture.firstFrame;
-  // Whatever is to be written, before any task is started.
-  std::unique_ptr<PictureWriter> writer = files.open(first);
-  OutputFile table(options.tableFile), report(reportFile(options.render, head));
-
-  VirtualMachine machine(options.machine);
-  for (const std::string& host : machine.missingHosts())
-    std::fprintf(stderr, "rayshade-host: warning: host %s did not join\n", host.c_str());
-  PvmLink link;
-  options.host.seed = options.render.seed;
-  options.host.killAfter = options.patience;
-  options.host.pingAfter = options.patience / 3;
-  const std::vector<HostInfo> present = link.hosts();
-  const std::size_t hosts = present.size();
-  options.host.wishes.memory = memoriesOf(lines, present[0].name);
-  applySchedule(options, {static_cast<std::uint32_t>(hosts), link.cores()}, survey.bytes);
-  options.host.wishes = neededTasks(work, options.host, hosts).wishes;
-  HostTask host(
-      link, [&](SceneSink& sink) { parseScene(again, sink); }, std::move(survey), head.settings,
-      options.host);
-  const std::int32_t everyRows = rowsBetweenLines(options.render, head);
-  need.what = "for the picture";
-  Picture sum{area.width, area.height, {}};
-  for (std::int32_t frame = first; frame < first + head.picture.frames; ++frame) {
-    if (frame != first) writer = files.open(frame);
-    ProgressLine progress(!quiet);
-    std::int32_t rows = 0;
-    host.renderFrame(
-        view, head.picture, frame,
-        [&](const std::vector<Color>& row) {
-          writer->row(row);
-          appendRow(sum, row);
-          if (everyRows > 0 && ++rows % everyRows == 0) sayLine(rows, area.height, area.width);
-        },
-        [&](const Completed& done) { progress.show(done); });
-    writer->finish();
-    progress.clear();
-    if (!quiet && files.named()) std::fprintf(stderr, "wrote %s\n", placeOf(files.nameOf(frame)).c_str());
-    const std::uint64_t pictureSum = checksum(sum);
-    sum.pixels.clear();
-    if (frame == first + head.picture.frames - 1) {
-      const HostSummary summary = host.finish();
-      if (!quiet) warnOfNotFinite(summary.notFinite);
-      if (report) {
-        writeTable(report.file(), summary, pictureSum);
-      } else if (!quiet || options.render.verbose) {
-        writeTable(stderr, summary, pictureSum);
-      }
-      if (table) std::fputs(taskTable(summary, pictureSum).c_str(), table.file());
-      report.close();
-      table.close();
-    }
-  }
-  return 0;
-}
 
 }  // namespace
 
@@ -183,16 +92,8 @@ int runHostProgram(int argc, char** argv) {
   HostProgramOptions options;
   declareHostOptions(app, options);
   if (const std::optional<int> status = readCommandLine(app, argc, argv)) return *status;
-  listenForInterruption();
-  options.render.parse.warn = [&](const std::string& message) {
-    if (!options.render.quiet) std::fprintf(stderr, "%s\n", message.c_str());
-  };
-  options.render.parse.print = [](const std::string& message) {
-    std::fprintf(stderr, "%s\n", message.c_str());
-  };
-  Need need;
-  const int status = runProgram(
-      "rayshade-host", [&] { return run(options, need); }, [&] { return need.story(); });
+  PvmStage stage(options.machine);
+  const int status = runTaskRender("rayshade-host", options, stage);
   if (status != 0 && wasSpawned())
     std::fprintf(stderr, "rayshade-host: names of files that do not begin with / are looked for in %s\n",
                  std::filesystem::current_path().c_str());

@@ -1,6 +1,7 @@
 // One program with several names: the role of a task is the name under which it was started.
 //
 //   rayshade-host            from a shell or from the pvm console
+//   rayshade-simulate        from a shell: all tasks in this process, in the time of another machine
 //   rayshade-voxel-trace     spawned by the host
 //   rayshade-pyramid-trace   spawned by the host
 //   rayshade-shade           spawned by the host
@@ -17,6 +18,7 @@
 #include "pvm/link/spawning.h"
 #include "pvm/messages/event_loop.h"
 #include "pvm/program/host_program.h"
+#include "pvm/program/simulate_program.h"
 #include "pvm/shade/shade_task.h"
 #include "pvm/trace/pyramid_task.h"
 #include "pvm/trace/voxel_task.h"
@@ -70,6 +72,7 @@ int main(int argc, char** argv) {
   name = name.substr(name.find_last_of('/') + 1);
   try {
     if (name == programName(Role::host)) return runHostProgram(argc, argv);
+    if (name == kSimulateProgram) return runSimulateProgram(argc, argv);
     if (argc == 2 && std::string_view(argv[1]) == "--version") return sayVersion(name);
     if (name == programName(Role::voxelTrace)) return runSlave<VoxelTask>(name);
     if (name == programName(Role::pyramidTrace)) return runSlave<PyramidTask>(name);

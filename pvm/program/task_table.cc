@@ -23,7 +23,7 @@ std::string seconds(double value) {
 std::vector<Column> columns(const TaskSummary& task) {
   const Report& r = task.report;
   const TraceCounts& c = r.counts;
-  return {{"role", std::string(programName(task.placement.role)).substr(9)},
+  return {{"role", roleName(task.placement.role)},
           {"index", count(task.placement.index)},
           {"machine", task.placement.host},
           {"objects", count(task.objects)},
@@ -49,6 +49,7 @@ std::vector<Column> columns(const TaskSummary& task) {
           {"peakMemory", count(r.peakMemory)},
           {"busySeconds", seconds(r.busySeconds)},
           {"idleSeconds", seconds(r.idleSeconds)},
+          {"waitSeconds", seconds(r.waitSeconds)},
           {"cpuSeconds", seconds(r.cpuSeconds)},
           {"cacheAsked", count(r.cache.lookups)},
           {"cacheHits", count(r.cache.hits)},
@@ -73,8 +74,7 @@ void writeTable(std::FILE* to, const HostSummary& s, std::uint64_t pictureSum) {
   for (const TaskSummary& task : s.tasks) {
     const Report& r = task.report;
     const TraceCounts& c = r.counts;
-    const std::string name =
-        std::string(programName(task.placement.role)).substr(9) + " " + std::to_string(task.placement.index);
+    const std::string name = roleName(task.placement.role) + " " + std::to_string(task.placement.index);
     std::fprintf(to,
                  "%-21s %-12.12s %9" PRIu64 " %9" PRIu64 " %10" PRIu64 " %9" PRIu64 " %9" PRIu64 " %8" PRIu64
                  " %8" PRIu64 " %7.1f %7.1f %7.2f %7.2f %7" PRIu64 " %7.1f\n",

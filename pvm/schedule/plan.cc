@@ -135,7 +135,7 @@ std::string describePlan(const std::vector<HostInfo>& hosts, HostOptions options
   add(text, "\n%-21s %-16s %9s %8s  %s\n", "task", "host", "objects", "MB", "why there");
   add(text, "%-21s %-16s %9s %8s  %s\n", "host 0", hosts[0].name.c_str(), "-", "-", "where it is started");
   for (const Placement& p : placements) {
-    const std::string name = std::string(programName(p.role)).substr(9) + " " + std::to_string(p.index);
+    const std::string name = roleName(p.role) + " " + std::to_string(p.index);
     std::string objects = "-", bytes = "-";
     if (p.role == Role::voxelTrace) {
       const Division::Held& held = division.expected[p.index % perCluster];

@@ -12,10 +12,15 @@ void ShadeTask::on(TaskId from, Configure message) {
   context_.outbox.post(from, Ready{message.epoch, arithmeticFingerprint(), 0, 0, 0});
 }
 
-void ShadeTask::on(TaskId from, Finish) {
-  Report report = context_.report();
+Report ShadeTask::counted() const {
+  Report report = context_.counted();
   report.combined = combined_;
-  context_.outbox.post(from, report);
+  return report;
+}
+
+void ShadeTask::on(TaskId from, Finish) {
+  context_.close();
+  context_.outbox.post(from, context_.closed(counted()));
   context_.finished = true;
 }
 

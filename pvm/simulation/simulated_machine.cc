@@ -4,35 +4,10 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "pvm/shade/shade_task.h"
-#include "pvm/trace/pyramid_task.h"
-#include "pvm/trace/voxel_task.h"
+#include "pvm/simulation/simulated_task.h"
 
 namespace rayshade {
 namespace {
-
-// The life of a slave task, as far as the machine moves it.
-class Slave {
- public:
-  virtual ~Slave() = default;
-  virtual void receive(const LinkEvent& event) = 0;
-  virtual bool work(double until) = 0;
-  virtual void flush() = 0;
-  virtual bool finished() const = 0;
-};
-
-template <class Task>
-class SlaveOf final : public Slave {
- public:
-  explicit SlaveOf(Link& link) : task_(link) {}
-  void receive(const LinkEvent& event) override { task_.receive(event); }
-  bool work(double until) override { return task_.work(until); }
-  void flush() override { task_.flush(); }
-  bool finished() const override { return task_.finished(); }
-
- private:
-  Task task_;
-};
 
 constexpr double kMoveSeconds = 1e-5;
 
@@ -76,6 +51,7 @@ class SimulatedMachine::Inside final : public Link {
   std::optional<LinkEvent> wait(double) override { return std::nullopt; }
   void watch(TaskId task) override { machine_.watchers_[task].insert(self_); }
   double now() const override { return machine_.time_ += 1e-7; }  // work takes time: it ends when asked to
+  Usage usage() const override { return {}; }
   unsigned cores() const override { return machine_.options_.cores; }
   void useThreads(unsigned threads) override {
     threads_ = threads;
@@ -103,7 +79,7 @@ struct SimulatedMachine::Running {
       : link(machine, self), host(hostName) {}
   Inside link;
   std::string host;
-  std::unique_ptr<Slave> task;
+  std::unique_ptr<SimulatedTask> task;
   bool hangs = false;
   bool mayWork = false;
 };
@@ -120,19 +96,8 @@ std::uint64_t SimulatedMachine::random(std::uint64_t below) {
 Spawned SimulatedMachine::spawn(Role role, const std::string& host) {
   const TaskId id{nextTask_++};
   auto running = std::make_unique<Running>(*this, id, host);
-  switch (role) {
-    case Role::voxelTrace:
-      running->task = std::make_unique<SlaveOf<VoxelTask>>(running->link);
-      break;
-    case Role::pyramidTrace:
-      running->task = std::make_unique<SlaveOf<PyramidTask>>(running->link);
-      break;
-    case Role::shade:
-      running->task = std::make_unique<SlaveOf<ShadeTask>>(running->link);
-      break;
-    default:
-      return {kNobody, std::string("no such program: ") + programName(role)};
-  }
+  running->task = makeTask(role, running->link);
+  if (!running->task) return {kNobody, std::string("no such program: ") + programName(role)};
   tasks_[id] = std::move(running);
   return {id, ""};
 }

@@ -66,6 +66,7 @@ class SimulatedMachine : public Machine {
   std::optional<LinkEvent> wait(double seconds) override;
   void watch(TaskId task) override { watchers_[task].insert(kHost); }
   double now() const override { return time_; }
+  Usage usage() const override { return {}; }
   unsigned cores() const override { return options_.cores; }
   void useThreads(unsigned) override {}  // the host has none
   void run(Job) override {}

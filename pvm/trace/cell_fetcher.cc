@@ -99,8 +99,12 @@ bool CellFetcher::arrive(CellItems&& message) {
   comingBytes_ = std::max(0.0, comingBytes_ - found->second.bytes);
   coming_.erase(found);
   --onTheWay_;
+  const std::uint64_t thrownOut = cache_.counts().evicted;
   const std::size_t bytes =
       cache_.insert(message.cell, std::move(message.items), at_.exposure, at_.cellBytes[key]);
+  context_.outbox.note(EventKind::cell, kNobody, key, 0, bytes);
+  if (const std::uint64_t thrown = cache_.counts().evicted - thrownOut)
+    context_.outbox.note(EventKind::thrown, kNobody, 0, static_cast<std::uint32_t>(thrown), 0);
   known_[key] = static_cast<std::uint32_t>(std::min<std::size_t>(bytes, 0xffffffffu));
   perWireByte_ += (static_cast<double>(bytes) / at_.cellBytes[key] - perWireByte_) / 8;
   askMore();

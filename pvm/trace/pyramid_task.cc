@@ -34,12 +34,17 @@ void PyramidTask::on(TaskId from, Configure message) {
   context_.outbox.post(from, Ready{context_.epoch, arithmeticFingerprint(), 0, 0, 0});
 }
 
-void PyramidTask::on(TaskId from, Finish) {
-  Report report = context_.report();
+Report PyramidTask::counted() const {
+  Report report = context_.counted();
   unit_.addTo(report);
   report.forwardedRays = forwarded_;
   report.modelBytes = report.cache.peakBytes;
-  context_.outbox.post(from, report);
+  return report;
+}
+
+void PyramidTask::on(TaskId from, Finish) {
+  context_.close();
+  context_.outbox.post(from, context_.closed(counted()));
   context_.finished = true;
 }
 
@@ -128,6 +133,7 @@ void PyramidTask::on(TaskId, CellItems message) {
 // ---- rays
 
 bool PyramidTask::work(double until) {
+  const TaskContext::Doing doing(context_, EventKind::trace);
   while (traceSome())
     if (context_.link.now() >= until) return true;
   return false;

@@ -18,7 +18,7 @@ namespace rayshade {
 class PyramidTask {
  public:
   using Accepted = TypeList<Configure, Finish, Ping, Weights, TileWork, PrimaryRays, CellWanted, CellItems,
-                            Answer, ImagePlace, ImagePiece>;
+                            Answer, ImagePlace, ImagePiece, Observe>;
 
   explicit PyramidTask(Link& link) : context_(link), unit_(context_, nullptr) {}
 
@@ -26,12 +26,18 @@ class PyramidTask {
   bool work(double until);
   void flush();
   bool finished() const { return context_.finished; }
-  void noteIdle(double seconds) { context_.idleSeconds += seconds; }
+  // Rays, tiles, and intersections whose shadow rays wait for cells.
+  std::uint64_t waiting() const { return rays_.size() + unit_.tiles.size() + unit_.shadows.waiting(); }
+  void noteIdle(double seconds) { context_.noteIdle(seconds, waiting()); }
+
+  Report counted() const;  // so far
+  std::uint64_t heldBytes() const { return unit_.cache.counts().peakBytes; }
 
   Epoch epoch() const { return context_.epoch; }
   void on(TaskId from, Configure message);
   void on(TaskId from, Finish);
   void on(TaskId from, Ping);
+  void on(TaskId, const Observe& message) { context_.observe(message); }
   void on(TaskId from, Weights message);
   void on(TaskId from, TileWork message);
   void on(TaskId from, PrimaryRays message);

@@ -10,7 +10,7 @@ constexpr unsigned kAhead = 3;  // tiles for each thread
 
 void TileJobs::stop() {
   if (!active()) return;
-  context_.link.useThreads(0);
+  context_.useThreads(0);
   before_ = counts();
   tracers_.clear();
   done_.clear();
@@ -19,7 +19,7 @@ void TileJobs::stop() {
 
 void TileJobs::begin(TaskId host, const SamplingRules& rules, unsigned threads) {
   rules_ = rules;
-  context_.link.useThreads(threads);
+  context_.useThreads(threads);
   for (unsigned i = 0; i < threads; ++i)
     tracers_.push_back(std::make_unique<SampleTracer>(space_, at_.settings, at_.request, at_.exposure.frame));
   for (unsigned i = 0; i < kAhead * threads; ++i) context_.outbox.post(host, PyramidWanted{});
@@ -27,11 +27,15 @@ void TileJobs::begin(TaskId host, const SamplingRules& rules, unsigned threads) 
 
 void TileJobs::add(Done&& job) {
   ++left_;
-  context_.link.run([this, job = std::move(job)](unsigned worker) mutable {
-    tracers_[worker]->trace(*rules_, job.work);
-    const std::lock_guard lock(mutex_);
-    done_.push_back(std::move(job));
-  });
+  const RecordId number = job.number;
+  const Tile tile = job.work.tile;
+  context_.run(
+      [this, job = std::move(job)](unsigned worker) mutable {
+        tracers_[worker]->trace(*rules_, job.work);
+        const std::lock_guard lock(mutex_);
+        done_.push_back(std::move(job));
+      },
+      number, tile.x, tile.y);
 }
 
 void TileJobs::send(TaskId host) {

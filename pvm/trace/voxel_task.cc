@@ -85,14 +85,20 @@ void VoxelTask::on(TaskId, CellItems message) {
   unit_.shadows.resume(cell);
 }
 
-void VoxelTask::on(TaskId from, Finish) {
-  jobs_.stop();
-  Report report = context_.report();
+Report VoxelTask::counted() const {
+  Report report = context_.counted();
   unit_.addTo(report);
   report.counts = report.counts + jobs_.counts();
   report.combined += jobs_.counts().hits;
   report.pyramids += jobs_.pyramids();
   report.pyramidRays += jobs_.pyramidRays();
+  return report;
+}
+
+void VoxelTask::on(TaskId from, Finish) {
+  jobs_.stop();
+  context_.close();
+  Report report = context_.closed(counted());
   report.modelBytes = share_.bytes();
   context_.outbox.post(from, report);
   context_.finished = true;
@@ -147,6 +153,7 @@ void VoxelTask::on(TaskId, const ShadowTask& task) {
 }
 
 bool VoxelTask::work(double until) {
+  const TaskContext::Doing doing(context_, EventKind::trace);
   while (traceSome())
     if (context_.link.now() >= until) return true;
   return false;

@@ -17,7 +17,7 @@ namespace rayshade {
 class VoxelTask {
  public:
   using Accepted = TypeList<Forget, Items, Configure, Finish, Ping, Weights, PrimaryRays, TileWork, RayTask,
-                            ShadowTask, CellWanted, CellItems, Answer, ImagePlace, ImagePiece>;
+                            ShadowTask, CellWanted, CellItems, Answer, ImagePlace, ImagePiece, Observe>;
 
   explicit VoxelTask(Link& link)
       : context_(link), unit_(context_, &share_), jobs_(context_, unit_.at, unit_.space) {}
@@ -28,7 +28,10 @@ class VoxelTask {
   void flush();
   bool finished() const { return context_.finished; }
   const VoxelShare& share() const { return share_; }
-  void noteIdle(double seconds) { context_.idleSeconds += seconds; }
+  void noteIdle(double seconds) { context_.noteIdle(seconds, waiting()); }
+
+  Report counted() const;  // so far
+  std::uint64_t heldBytes() const { return share_.bytes() + unit_.cache.counts().peakBytes; }
 
   Epoch epoch() const { return context_.epoch; }
   void on(TaskId from, Forget);
@@ -36,6 +39,7 @@ class VoxelTask {
   void on(TaskId from, Configure message);
   void on(TaskId from, Finish);
   void on(TaskId from, Ping);
+  void on(TaskId, const Observe& message) { context_.observe(message); }
   void on(TaskId, PrimaryRays&& work);
   void on(TaskId from, TileWork message);
   void on(TaskId from, const Answer& message);

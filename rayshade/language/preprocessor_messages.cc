@@ -51,7 +51,8 @@ std::vector<PreprocessorMessage> preprocessorMessages(const std::string& said) {
   for (std::string line; std::getline(in, line);) {
     // No byte of a file's name may colour a message.
     std::replace_if(
-        line.begin(), line.end(), [](char c) { return (c >= 0 && c < ' ' && c != '\t') || c == 0x7f; }, '?');
+        line.begin(), line.end(),
+        [](char c) { return (static_cast<unsigned char>(c) < ' ' && c != '\t') || c == 0x7f; }, '?');
     lines.push_back(line);
   }
 

@@ -77,7 +77,8 @@ std::string shown(char c) {
 std::uint32_t FileNames::numberOf(std::string_view name) {
   std::string printable(name);  // it goes into messages: no byte may end or colour them
   std::replace_if(
-      printable.begin(), printable.end(), [](char c) { return (c >= 0 && c < ' ') || c == 0x7f; }, '?');
+      printable.begin(), printable.end(),
+      [](char c) { return static_cast<unsigned char>(c) < ' ' || c == 0x7f; }, '?');
   const auto [at, isNew] = numbers_.try_emplace(printable, static_cast<std::uint32_t>(names_.size()));
   if (isNew) names_.push_back(printable);
   return at->second;

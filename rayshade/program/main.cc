@@ -6,6 +6,7 @@
 
 #include "rayshade/base/interruption.h"
 #include "rayshade/base/memory.h"
+#include "rayshade/events/event_file.h"
 #include "rayshade/program/command_line.h"
 #include "rayshade/program/frame_files.h"
 #include "rayshade/program/options.h"
@@ -50,6 +51,14 @@ void writeReport(std::FILE* to, const Scene& scene, const FrameResult& result, c
   std::fprintf(to, "%-24s %016" PRIx64 "\n", "picture checksum", pictureSum);
 }
 
+// All threads are one lane.
+void writeThreads(std::FILE* to, const std::vector<EventRecord>& records) {
+  EventLane lane{0, "rayshade", 0, "", 0, {}};
+  for (const EventRecord& record : records) lane.log.join(record.log());
+  writeHead(to, {});
+  writeLane(to, lane);
+}
+
 int printPlan(const Options& options) {
   FeatureSink sink;
   SceneHead head = parseScene(options.parse, sink);
@@ -72,9 +81,9 @@ struct Need {
 
 int run(const Options& options, Need& need) {
   Times times;
-  double mark = secondsNow();
+  double mark = steadySeconds();
   auto lap = [&mark] {
-    const double now = secondsNow(), spent = now - mark;
+    const double now = steadySeconds(), spent = now - mark;
     mark = now;
     return spent;
   };
@@ -91,12 +100,15 @@ int run(const Options& options, Need& need) {
   times.read = lap();
   const bool quiet = options.quiet || head.report.quiet;
   const bool report = reportWanted(options, head);
-  OutputFile reportTo(reportFile(options, head));
+  OutputFile reportTo(reportFile(options, head)), events(options.eventsFile);
+  std::vector<EventRecord> records;
+  for (unsigned thread = 0; events && thread < threadsOf(options); ++thread)
+    records.emplace_back(kMostEvents, static_cast<std::uint16_t>(thread));
   const std::int32_t everyRows = rowsBetweenLines(options, head);
   const std::int32_t first = head.picture.firstFrame;
   for (std::int32_t frame = first; frame < first + head.picture.frames; ++frame) {
     const std::unique_ptr<PictureWriter> writer = files.open(frame);
-    mark = secondsNow();
+    mark = steadySeconds();
     need.what = "to sort the objects of the scene";
     scene.prepare(exposureOf(head.picture, frame), 1, threadsOf(options));
     times.build = lap();
@@ -111,7 +123,7 @@ int run(const Options& options, Need& need) {
           if (report) appendRow(sum, row);
           if (everyRows > 0 && ++rows % everyRows == 0) sayLine(rows, area.height, area.width);
         },
-        [&](const Sampler& sampler) { progress.show(sampler.completed()); });
+        [&](const Sampler& sampler) { progress.show(sampler.completed()); }, records);
     writer->finish();
     times.trace = lap();
     progress.clear();
@@ -121,6 +133,8 @@ int run(const Options& options, Need& need) {
       std::fprintf(stderr, "wrote %s\n", placeOf(files.nameOf(frame)).c_str());
   }
   reportTo.close();
+  if (events) writeThreads(events.file(), records);
+  events.close();
   return 0;
 }
 

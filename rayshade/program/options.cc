@@ -123,6 +123,10 @@ void declareOptions(CLI::App& app, Options& o) {
   app.add_flag("-q", o.quiet, "no progress, no advice")->group(talk);
   app.add_flag("-v", o.verbose, "report at the end")->group(talk);
   app.add_option("-V", o.verboseFile, "report into a file")->type_name(kFile)->check(notEmpty())->group(talk);
+  app.add_option("--events", o.eventsFile, "note what was done when, for rayshade-events")
+      ->type_name(kFile)
+      ->check(notEmpty())
+      ->group(talk);
   app.add_option("-F", o.reportEvery, "a line that stays every so many rows")
       ->check(wholeNumberFrom(1, kMaxPictureSide))
       ->group(talk);

@@ -20,6 +20,7 @@ struct Options {
   bool quiet = false, verbose = false;
   std::optional<unsigned> threads;  // that trace
   std::string verboseFile;          // -V: the report goes there
+  std::string eventsFile;           // what was done when goes there
 
   // What is said on the command line; nothing: the scene file decides.
   std::vector<int> resolution, window;

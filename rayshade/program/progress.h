@@ -6,19 +6,15 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdint>
 #include <cstdio>
 #include <functional>
 #include <utility>
 
+#include "rayshade/base/clock.h"
 #include "rayshade/sampling/sampler.h"
 
 namespace rayshade {
-
-inline double secondsNow() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 // A line that stays, for those who ask for it.
 inline void sayLine(std::int32_t rows, std::int32_t allRows, std::int32_t width) {
@@ -35,7 +31,7 @@ inline void warnOfNotFinite(std::uint64_t samples) {
 class ProgressLine {
  public:
   using Clock = std::function<double()>;  // seconds
-  explicit ProgressLine(bool wanted, bool terminal = isatty(STDERR_FILENO) == 1, Clock clock = secondsNow)
+  explicit ProgressLine(bool wanted, bool terminal = isatty(STDERR_FILENO) == 1, Clock clock = steadySeconds)
       : wanted_(wanted), terminal_(terminal), clock_(std::move(clock)), begin_(clock_()), last_(begin_) {}
   ~ProgressLine() { clear(); }
 

@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "rayshade/base/clock.h"
 #include "rayshade/base/crew.h"
 #include "rayshade/base/interruption.h"
 
@@ -62,6 +63,17 @@ std::optional<Work> nextWork(Sampler& sampler) {
   return work;
 }
 
+Event tileEvent(const Tile& tile, std::uint32_t number, double begin, double end) {
+  return {nanoseconds(begin),
+          nanoseconds(end),
+          EventKind::tile,
+          0,
+          0,
+          number,
+          static_cast<std::uint32_t>(tile.x),
+          static_cast<std::uint64_t>(tile.y)};
+}
+
 void supply(Sampler& sampler, const Work& work) {
   if (work.samples.empty()) sampler.supply(work.tile, work.tileColors);
   for (std::size_t i = 0; i < work.samples.size(); ++i) sampler.supply(work.samples[i], work.colors[i]);
@@ -71,28 +83,35 @@ void supply(Sampler& sampler, const Work& work) {
 
 FrameResult renderFrame(Scene& scene, const FrameRequest& request, std::int32_t frame, unsigned threads,
                         const std::function<void(const std::vector<Color>&)>& row,
-                        const std::function<void(const Sampler&)>& progress) {
+                        const std::function<void(const Sampler&)>& progress, std::span<EventRecord> records) {
   Sampler sampler(request.picture, request.seed, static_cast<std::uint32_t>(frame));
   const SamplingRules& rules = sampler.rules();
   std::vector<std::unique_ptr<SampleTracer>> tracers(threads);  // each made by the thread that uses it
   std::mutex mutex;                                             // of `done`
   std::vector<Work> done, arrived;
   std::vector<Color> finished;
-  Crew crew(threads);  // the last one: it ends before what its jobs use
+  std::uint32_t number = 0;  // of work
+  Crew crew(threads);        // the last one: it ends before what its jobs use
 
   while (!sampler.finished()) {
     while (crew.left() < kTilesEach * threads) {
       std::optional<Work> next = nextWork(sampler);
       if (!next) break;
-      crew.give([&, work = std::move(*next)](unsigned worker) mutable {
+      crew.give([&, work = std::move(*next), number = number++](unsigned worker) mutable {
+        const double begin = records.empty() ? 0 : steadySeconds();
         if (!tracers[worker])
           tracers[worker] = std::make_unique<SampleTracer>(scene, scene.settings, request, frame);
         tracers[worker]->trace(rules, work);
+        if (!records.empty()) records[worker].add(tileEvent(work.tile, number, begin, steadySeconds()));
         const std::lock_guard lock(mutex);
         done.push_back(std::move(work));
       });
     }
-    if (!crew.work()) crew.waitForOne();
+    if (!crew.work()) {
+      const double begin = records.empty() ? 0 : steadySeconds();
+      crew.waitForOne();
+      if (!records.empty()) records[0].span(EventKind::idle, begin, steadySeconds());
+    }
     crew.rethrow();
     {
       const std::lock_guard lock(mutex);

@@ -7,6 +7,7 @@
 
 #include <functional>
 
+#include "rayshade/events/event_record.h"
 #include "rayshade/sampling/sampler.h"
 #include "rayshade/scene/camera.h"
 #include "rayshade/trace/scene.h"
@@ -53,9 +54,10 @@ struct FrameResult {
   TraceCounts counts;
   SamplerCounts samples;
 };
-// `threads`: with the caller's; the picture is the same for any number.
+// `threads`: with the caller's; the picture is the same for any number.  `records`: of events, one for each thread, or none.
 FrameResult renderFrame(Scene& scene, const FrameRequest& request, std::int32_t frame, unsigned threads,
                         const std::function<void(const std::vector<Color>&)>& row,
-                        const std::function<void(const Sampler&)>& progress = {});
+                        const std::function<void(const Sampler&)>& progress = {},
+                        std::span<EventRecord> records = {});
 
 }  // namespace rayshade

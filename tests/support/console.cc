@@ -13,7 +13,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include "rayshade/program/progress.h"
+#include "rayshade/base/clock.h"
 
 namespace rayshade {
 
@@ -47,10 +47,10 @@ bool Console::read(double seconds) {
 }
 
 std::string Console::hear(const std::string& text, double seconds) {
-  const double end = secondsNow() + seconds;
+  const double end = steadySeconds() + seconds;
   std::size_t at;
-  while ((at = heard_.find(text)) == std::string::npos && secondsNow() < end) {
-    if (!read(std::min(0.1, std::max(0.0, end - secondsNow()))))
+  while ((at = heard_.find(text)) == std::string::npos && steadySeconds() < end) {
+    if (!read(std::min(0.1, std::max(0.0, end - steadySeconds()))))
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
   const std::size_t count = at == std::string::npos ? heard_.size() : at + text.size();
@@ -60,7 +60,7 @@ std::string Console::hear(const std::string& text, double seconds) {
 }
 
 bool Console::ends(double seconds) {
-  for (const double end = secondsNow() + seconds; secondsNow() < end;) {
+  for (const double end = steadySeconds() + seconds; steadySeconds() < end;) {
     read(0.02);  // a full terminal would keep it
     if (waitpid(pid_, nullptr, WNOHANG) == pid_) pid_ = 0;
     if (pid_ == 0) return true;

@@ -18,6 +18,7 @@ class NullLink : public Link {
   std::optional<LinkEvent> wait(double) override { return std::nullopt; }
   void watch(TaskId) override {}
   double now() const override { return time_ += 1e-5; }
+  Usage usage() const override { return {}; }
   unsigned cores() const override { return 1; }
   void useThreads(unsigned) override {}
   void run(Job job) override { job(0); }

@@ -16,12 +16,12 @@
 #include <stdexcept>
 #include <thread>
 
-#include "rayshade/program/progress.h"
+#include "rayshade/base/clock.h"
 
 namespace rayshade {
 Program::Program(const std::vector<std::string>& arguments, const std::string& scratch,
                  const Environment& environment, const std::string& directory)
-    : begin_(secondsNow()), outputFile_(scratch + ".out"), errorFile_(scratch + ".err") {
+    : begin_(steadySeconds()), outputFile_(scratch + ".out"), errorFile_(scratch + ".err") {
   pid_ = fork();
   if (pid_ < 0) throw std::runtime_error("fork");
   if (pid_ > 0) return;
@@ -46,7 +46,7 @@ bool Program::running() {
     finished.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
     finished.output = readText(outputFile_);
     finished.errors = readText(errorFile_);
-    finished.seconds = secondsNow() - begin_;
+    finished.seconds = steadySeconds() - begin_;
     finished.peakKilobytes = usage.ru_maxrss;
     done_ = finished;
   }
@@ -54,10 +54,10 @@ bool Program::running() {
 }
 
 Finished Program::wait(double seconds) {
-  const double deadline = secondsNow() + seconds;
+  const double deadline = steadySeconds() + seconds;
   bool inTime = true;
   while (running()) {
-    if (inTime && secondsNow() >= deadline) {
+    if (inTime && steadySeconds() >= deadline) {
       inTime = false;
       kill(pid_, SIGKILL);
     }

@@ -53,17 +53,29 @@ Rendered renderSequentially(const Job& job, std::uint32_t voxels, unsigned threa
 
 RenderedByTasks renderByTasks(const Job& job, const HostOptions& hostOptions,
                               const SimulatedMachine::Options& machineOptions,
-                              const std::function<void(SimulatedMachine&)>& prepare) {
+                              const std::function<void(SimulatedMachine&)>& prepare,
+                              std::vector<EventLane>* lanes) {
+  SimulatedMachine machine(machineOptions);
+  if (prepare) prepare(machine);
+  RenderedByTasks result = renderOn(machine, job, hostOptions, lanes);
+  result.moves = machine.moves();
+  result.deaths = machine.deaths();
+  result.peakQueue = machine.peakQueue();
+  return result;
+}
+
+RenderedByTasks renderOn(Machine& machine, const Job& job, const HostOptions& hostOptions,
+                         std::vector<EventLane>* lanes, const std::function<void(const HostTask&)>& hasHost) {
   SurveySink survey({});
   const SceneHead head = job.read(survey);
   const View view = viewOf(head.camera, head.picture).value();
   const PixelArea area = pixelArea(head.picture).value();
-  SimulatedMachine machine(machineOptions);
-  if (prepare) prepare(machine);
   HostOptions options = hostOptions;
   options.seed = job.options.seed;
   HostTask host(
       machine, [&](SceneSink& sink) { job.read(sink); }, survey.survey(), head.settings, options);
+  if (hasHost) hasHost(host);
+  if (lanes != nullptr) host.observe(kMostEvents, [lanes](const EventLane& lane) { lanes->push_back(lane); });
   RenderedByTasks result;
   const std::int32_t first = head.picture.firstFrame;
   for (std::int32_t frame = first; frame < first + head.picture.frames; ++frame) {
@@ -74,9 +86,6 @@ RenderedByTasks renderByTasks(const Job& job, const HostOptions& hostOptions,
   }
   result.summary = host.finish();
   for (const TaskSummary& task : result.summary.tasks) result.counts = result.counts + task.report.counts;
-  result.moves = machine.moves();
-  result.deaths = machine.deaths();
-  result.peakQueue = machine.peakQueue();
   return result;
 }
 

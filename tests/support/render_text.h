@@ -43,10 +43,15 @@ struct RenderedByTasks {
   int deaths = 0;
   std::size_t peakQueue = 0;
 };
-// `prepare` may watch the machine, or aim at its tasks.
+// `prepare` may watch the machine, or aim at its tasks.  With `lanes` events are noted.
 RenderedByTasks renderByTasks(const Job& job, const HostOptions& host,
                               const SimulatedMachine::Options& machine,
-                              const std::function<void(SimulatedMachine&)>& prepare = {});
+                              const std::function<void(SimulatedMachine&)>& prepare = {},
+                              std::vector<EventLane>* lanes = nullptr);
+// The same on any machine, which learns of the host task.
+RenderedByTasks renderOn(Machine& machine, const Job& job, const HostOptions& host,
+                         std::vector<EventLane>* lanes = nullptr,
+                         const std::function<void(const HostTask&)>& hasHost = {});
 
 // While it lives, another directory is the current one: scenes name their files relative to it.
 class CurrentDirectory {

@@ -39,7 +39,7 @@ using Floors = std::vector<std::vector<std::string>>;
 const Floors& floors() {
   static const Floors all{
       {"rayshade/base"},
-      {"rayshade/optics", "rayshade/image"},
+      {"rayshade/optics", "rayshade/image", "rayshade/events"},
       {"rayshade/shapes", "rayshade/accel", "rayshade/sampling"},
       {"rayshade/lights", "rayshade/textures", "rayshade/atmosphere"},
       {"rayshade/scene"},

@@ -16,6 +16,7 @@ class HostsOnly final : public Machine {
   std::optional<LinkEvent> wait(double) override { return std::nullopt; }
   void watch(TaskId) override {}
   double now() const override { return 0; }
+  Usage usage() const override { return {}; }
   unsigned cores() const override { return 1; }
   void useThreads(unsigned) override {}
   void run(Job) override {}

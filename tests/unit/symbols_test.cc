@@ -54,8 +54,10 @@ TEST(Symbols, SourcesUseNoInexactFunctionOfTheLibrary) {
       if (file.extension() != ".cc" && file.extension() != ".h") continue;
       ++looked;
       std::ifstream in(file);
+      // Regular expressions take long.
       for (std::string line; std::getline(in, line);)
-        EXPECT_FALSE(std::regex_search(line, inexact)) << file << ": " << line;
+        EXPECT_FALSE(line.find("std::") != std::string::npos && std::regex_search(line, inexact))
+            << file << ": " << line;
     }
   EXPECT_GT(looked, 250u);
 }
