@@ -44,10 +44,10 @@ std::vector<CellId> cellsOf(const BinTree& tree, const FrameRequest& request, co
   const View& view = request.view;
   if (view.lensRight != Vec3{} || view.lensUp != Vec3{})
     return cellsOfLens(tree, request, rules, tile, frame);
-  // Half a filter around the middles of pixels, and a little more: a pyramid of one ray is none.
+  // Half a filter around the places of pixels, and a little more: a pyramid of one ray is none.
   const double margin = request.picture.filter.width / 2 + 1e-3;
-  const double u0 = rules.area.x + tile.x + 0.5 - margin, u1 = u0 + tile.width - 1 + 2 * margin;
-  const double v0 = rules.area.y + tile.y + 0.5 - margin, v1 = v0 + tile.height - 1 + 2 * margin;
+  const double u0 = rules.area.x + tile.x - margin, u1 = u0 + tile.width - 1 + 2 * margin;
+  const double v0 = rules.area.y + tile.y - margin, v1 = v0 + tile.height - 1 + 2 * margin;
   const auto corner = [&](double u, double v) { return view.first + u * view.right + v * view.down; };
   return clipList(tree,
                   pyramidOf(view.eye, {corner(u0, v0), corner(u1, v0), corner(u1, v1), corner(u0, v1)}));

@@ -89,8 +89,9 @@ void serialize(Archive& archive, PictureSpec& p) {
   archive(p.width, p.height, p.window, p.crop, p.samplesPerSide, p.sampling, p.uses, p.refinement, p.jitter,
           p.filter, p.contrast, p.firstFrame, p.frameLength, p.startTime, p.shutter);
   if constexpr (Archive::kReading) {
-    if (p.samplesPerSide < 1 || p.samplesPerSide > kMaxSamplesPerSide) {
-      p.samplesPerSide = 1;
+    if (p.samplesPerSide < 1 || p.samplesPerSide > kMaxSamplesPerSide || p.sampling > Sampling::strata ||
+        p.refinement > Refinement::all) {
+      p = {};
       archive.fail();
     }
   }
