@@ -26,8 +26,9 @@ namespace {
 template <class M>
 std::string nameOf() {
   const std::string_view here = std::source_location::current().function_name();
-  const std::size_t begin = here.rfind("::") + 2;
-  return std::string(here.substr(begin, here.find_first_of(";]", begin) - begin));
+  const std::size_t begin = here.rfind("M = ") + 4;
+  const std::string_view name = here.substr(begin, here.find_first_of(";]", begin) - begin);
+  return std::string(name.substr(name.rfind("::") + 2));
 }
 
 }  // namespace

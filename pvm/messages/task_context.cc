@@ -17,6 +17,7 @@ void TaskContext::flush() {
   if (finished && record_) {
     EventLog log = record_->log();
     for (const auto& thread : ofThreads_) log.join(thread->log());
+    outbox.record = nullptr;
     record_.reset();
     outbox.post(link.parent(), Observed{observed_, link.now(), std::move(log)});
   }

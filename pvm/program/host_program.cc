@@ -66,6 +66,10 @@ class PvmStage final : public Stage {
       std::fprintf(stderr, "rayshade-host: warning: host %s did not join\n", host.c_str());
     return link_.emplace();
   }
+  void end() override {
+    link_.reset();
+    machine_.reset();
+  }
   unsigned cores() override { return coreCount(); }
   HostMemories memories(const std::string& ownName) override { return memoriesOf(lines(), ownName); }
   std::string console() override {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pvm/program/task_render.h"
 
+#include <memory>
+
 #include "pvm/program/task_table.h"
 #include "pvm/schedule/plan.h"
 #include "rayshade/base/interruption.h"
@@ -141,7 +143,13 @@ int runTaskRender(const std::string& program, HostProgramOptions& options, Stage
   };
   Need need;
   return runProgram(
-      program, [&] { return run(options, stage, need); }, [&] { return need.story(); });
+      program,
+      [&] {
+        // Before the program may die by a signal.
+        const std::unique_ptr<Stage, void (*)(Stage*)> ending(&stage, [](Stage* s) { s->end(); });
+        return run(options, stage, need);
+      },
+      [&] { return need.story(); });
 }
 
 }  // namespace rayshade

@@ -13,8 +13,10 @@ class Stage {
   virtual ~Stage() = default;
   // The hosts that there would be; changes and starts nothing.
   virtual std::vector<HostInfo> planned() = 0;
-  // Starts, or finds, the machine; it lives as long as this.
+  // Starts, or finds, the machine.
   virtual Machine& start() = 0;
+  // Ends what was started, whatever has happened.
+  virtual void end() {}
   virtual unsigned cores() = 0;  // of each host
   virtual HostMemories memories(const std::string& ownName) = 0;
   // The host task that runs there.

@@ -90,7 +90,8 @@ TEST(Sampling, NetsGiveBlurredEdgesLessErrorThanStrata) {
       exact.push_back(shareBelow({step, step / 2, 0.2, 0.1}, -u + v / 2 + step / 2 + 0.15));
     }
   const std::string scene =
-      "screen 32 24 eyep 0 0 10 lookp 0 0 0 up 0 1 0 fov 40 30.5369432627651 aperture .25 focaldist 10 light 1 ambient "
+      "screen 32 24 eyep 0 0 10 lookp 0 0 0 up 0 1 0 fov 40 30.5369432627651 aperture .25 focaldist 10 light "
+      "1 ambient "
       "surface white "
       "ambient 1 1 1 diffuse 0 0 0 polygon white -100 200 -4 100 -200 -4 -500 -200 -4 -500 200 -4";
   EXPECT_GT(gain(scene, 4, exact), 1.3);

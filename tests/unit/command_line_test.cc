@@ -48,7 +48,7 @@ TEST_F(CommandLine, ValuesThatMakeNoSenseAreRefused) {
   for (const Case& c : {Case{"-A", numbers + "|1.5|99999999999999999999|2000000"},
                         {"-N", numbers + "|0|1.5|99999999999999999999"},
                         {"-E", numbers},
-                        {"-S", numbers + "|0|9|2.5"},
+                        {"-S", numbers + "|0|65|2.5"},
                         {"-D", numbers + "|1.5|99999999999"},
                         {"-F", numbers + "|0|1.5"},
                         {"-G", numbers + "|0"},
@@ -145,7 +145,7 @@ TEST_F(CommandLine, CompletionsAreOptionsFilesAndValues) {
   };
   EXPECT_EQ(complete("rayshade", "b"), "ball.ray below\n");
   EXPECT_EQ(complete("rayshade", "-O ba"), "bad.txt ball.ray\n");
-  EXPECT_EQ(complete("rayshade", "--s"), "--seed\n");
+  EXPECT_EQ(complete("rayshade", "--se"), "--seed\n");
   EXPECT_EQ(complete("rayshade", "-A ''"), "\n");
   EXPECT_EQ(complete("rayshade-host", "--schedule d"), "data demand\n");
   EXPECT_EQ(complete("rayshade-host", "--hosts below"), "below\n");
@@ -168,7 +168,7 @@ TEST_F(CommandLine, WhatIsInstalledIsRemovedAgain) {
   const Finished installed = shell(make + "install-files");
   EXPECT_EQ(installed.status, 0) << installed.errors;
   const auto there = files();
-  EXPECT_EQ(there.size(), 1 + 7 + 7 + 4u);
+  EXPECT_EQ(there.size(), 1 + 9 + 9 + 6u);
   for (const char* file : {"usr/bin/rayshade-shade", "usr/share/man/man1/rayshade-voxel-trace.1",
                            "usr/share/bash-completion/completions/rayshade-host"})
     EXPECT_TRUE(std::binary_search(there.begin(), there.end(), file)) << file;

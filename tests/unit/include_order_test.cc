@@ -109,7 +109,7 @@ TEST(IncludeOrder, TasksDoNotKnowEachOther) {
   };
   auto stem = [](const std::string& file) { return file.substr(0, file.find_last_of('.')); };
   for (const Include& include : includesOf("pvm")) {
-    if (!isTask(include.from)) continue;
+    if (!isTask(include.from) || folderOf(include.from) == "pvm/simulation") continue;
     EXPECT_FALSE(isTask(include.to) && stem(include.to) != stem(include.from))
         << include.from << " includes " << include.to;
     EXPECT_NE(include.to, "pvm/link/pvm_link.h") << include.from;

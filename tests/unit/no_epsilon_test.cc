@@ -22,6 +22,8 @@ constexpr Known kKnown[] = {
     {"rayshade/base/noise.cc", "1e-5", "weight of an octave, rayshade's own"},
     {"rayshade/base/transform.cc", "1e-14", "determinant, multiplied with the volume"},
     {"rayshade/space/cost.cc", "1e-3", "share of rays in an estimate"},
+    {"rayshade/events/event_export.cc", "1e-3", "microseconds of a trace"},
+    {"rayshade/events/event_export.cc", "1e-9", "seconds of a trace"},
     {"rayshade/image/flip.cc", "0.0047", "a filter of the error measure"},
     {"rayshade/image/flip.cc", "0.0053", "a filter of the error measure"},
     {"rayshade/image/flip.cc", "1e-5", "a filter of the error measure"},
