@@ -27,17 +27,16 @@ void PyramidTask::on(TaskId from, Configure message) {
   context_.beginEpoch(from, message);
   host_ = from;
   rays_.clear();
-  waitingForCell_.clear();
   const std::uint32_t cluster = *place % message.directory.clusters;
   const auto finder = static_cast<std::uint32_t>(message.directory.voxelTasks.size()) + *place;
   unit_.begin(from, std::move(message), cluster, finder);
+  unit_.fetchesForRays = true;
   context_.outbox.post(from, Ready{context_.epoch, arithmeticFingerprint(), 0, 0, 0});
 }
 
 Report PyramidTask::counted() const {
   Report report = context_.counted();
   unit_.addTo(report);
-  report.forwardedRays = forwarded_;
   report.modelBytes = report.cache.peakBytes;
   return report;
 }
@@ -119,15 +118,7 @@ void PyramidTask::on(TaskId, CellItems message) {
     ++context_.outbox.traffic.refused;
     return;
   }
-  unit_.shadows.resume(cell);
-  unit_.tiles.arrive(cell);
-  if (const auto waiting = waitingForCell_.find(static_cast<std::uint32_t>(cell));
-      waiting != waitingForCell_.end()) {
-    RayBundle rays = std::move(waiting->second);
-    waitingForCell_.erase(waiting);
-    // The cell is here now and gone when others come: each ray passes it at once.
-    while (!rays.empty()) traceWaiting(rays);
-  }
+  for (RayBundle rays = unit_.arrive(cell); !rays.empty();) traceWaiting(rays);
 }
 
 // ---- rays
@@ -145,11 +136,7 @@ bool PyramidTask::traceSome() {
   if (any) {
     traceWaiting(rays_);
   } else {
-    any = unit_.traceTile([this](Ray&& ray, const ReplyTo& to) { queue(std::move(ray), to); },
-                          [this](Ray&& ray, const NextBlock& next, const ReplyTo& to) {
-                            ++forwarded_;
-                            goOn(std::move(ray), next, to);
-                          });
+    any = unit_.traceTile([this](Ray&& ray, const ReplyTo& to) { queue(std::move(ray), to); });
   }
   unit_.sendTiles(host_);
   unit_.wantTiles(host_);
@@ -160,10 +147,8 @@ bool PyramidTask::traceSome() {
 void PyramidTask::traceWaiting(RayBundle& from) {
   bundle_.clear();
   from.moveLast(std::min(from.size(), kBundleSize), bundle_);
-  unit_.trace(
-      bundle_.rays, bundle_.begin, bundle_.to,
-      [this](Ray&& ray, const ReplyTo& to) { queue(std::move(ray), to); },
-      [this](Ray&& ray, const NextBlock& next, const ReplyTo& to) { goOn(std::move(ray), next, to); });
+  unit_.trace(bundle_.rays, bundle_.begin, bundle_.to,
+              [this](Ray&& ray, const ReplyTo& to) { queue(std::move(ray), to); });
 }
 
 // A ray that begins at a hit: to the voxel where it begins, or into the own queue.
@@ -176,15 +161,6 @@ void PyramidTask::queue(Ray&& ray, const ReplyTo& to) {
   WalkStep<VoxelId> first;
   walk.next(first);
   unit_.replies.forward(unit_.at.ownerOf(first.where), std::move(ray), 0, to);
-}
-
-// A ray that needs what is not at hand: behind the horizon, or where fetching does not pay, demand driven becomes data driven.
-void PyramidTask::goOn(Ray&& ray, const NextBlock& next, const ReplyTo& to) {
-  if (unit_.cells.missed(next.cell, 1, objectsTravel()) && objectsTravel()) {
-    waitingForCell_[static_cast<std::uint32_t>(next.cell)].add(std::move(ray), next.tEnter, to);
-  } else {
-    unit_.replies.forward(unit_.at.ownerOf(next.voxel), std::move(ray), next.step, to);
-  }
 }
 
 }  // namespace rayshade

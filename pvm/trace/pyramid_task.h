@@ -53,15 +53,12 @@ class PyramidTask {
   bool traceSome();
   void traceWaiting(RayBundle& rays);
   void queue(Ray&& ray, const ReplyTo& to);
-  void goOn(Ray&& ray, const NextBlock& next, const ReplyTo& to);
 
   TaskContext context_;
   TraceUnit unit_;
   TaskId host_ = kNobody;
   RayBundle rays_;    // to be traced, last in first out
   RayBundle bundle_;  // being traced
-  std::unordered_map<std::uint32_t, RayBundle> waitingForCell_;
-  std::uint64_t forwarded_ = 0;
 };
 
 }  // namespace rayshade

@@ -37,20 +37,22 @@ struct TraceUnit {
   void setWeights(const Weights& message);
 
   // Traces at most kBundleSize rays and answers what is finished here.  queue(ray, reply) takes rays that begin at hits and are
-  // not followed at once, goesOn(ray, next, reply) those that go on elsewhere.
-  template <class Queue, class GoesOn>
-  void trace(std::span<Ray> rays, std::span<const double> begin, std::span<const ReplyTo> to, Queue queue,
-             GoesOn goesOn) {
+  // not followed at once.
+  template <class Queue>
+  void trace(std::span<Ray> rays, std::span<const double> begin, std::span<const ReplyTo> to, Queue queue) {
     if (at.policy.shadeLocally) {
-      traceTrees(rays, begin, to, goesOn);
+      traceTrees(rays, begin, to);
     } else {
-      traceOnce(rays, begin, to, queue, goesOn);
+      traceOnce(rays, begin, to, queue);
     }
   }
 
+  // A cell is here: the rays that have waited for it, to be traced before another one comes and this one goes.
+  RayBundle arrive(CellId cell);
+
   // Traces the next samples of a tile, if any can be traced now.  False: none can.
-  template <class Queue, class GoesOn>
-  bool traceTile(Queue queue, GoesOn goesOn);
+  template <class Queue>
+  bool traceTile(Queue queue);
   // Asks the host for tiles until there are so many in hand or asked for.
   void wantTiles(TaskId host, std::size_t most = kAhead);
   // What was asked for has come: a tile, or samples in its place.
@@ -79,17 +81,19 @@ struct TraceUnit {
   ShadowBundles shadows;
   HitShader shader;
   Tracer tracer;
-  std::uint64_t pyramids = 0, pyramidRays = 0, cellsServed = 0;
+  bool fetchesForRays = false;  // not only for shadow rays
+  std::uint64_t pyramids = 0, pyramidRays = 0, forwardedRays = 0, cellsServed = 0;
 
  private:
-  template <class GoesOn>
-  void traceTrees(std::span<Ray> rays, std::span<const double> begin, std::span<const ReplyTo> to,
-                  GoesOn goesOn);
-  template <class Queue, class GoesOn>
-  void traceOnce(std::span<Ray> rays, std::span<const double> begin, std::span<const ReplyTo> to, Queue queue,
-                 GoesOn goesOn);
+  void traceTrees(std::span<Ray> rays, std::span<const double> begin, std::span<const ReplyTo> to);
+  template <class Queue>
+  void traceOnce(std::span<Ray> rays, std::span<const double> begin, std::span<const ReplyTo> to,
+                 Queue queue);
+  void goOn(Ray&& ray, const NextBlock& next, const ReplyTo& to);
 
-  std::size_t asked_ = 0;  // tiles
+  std::size_t asked_ = 0;         // tiles
+  std::uint64_t travelling_ = 0;  // rays that went on elsewhere
+  std::unordered_map<std::uint32_t, RayBundle> waitingForCell_;
   // Room that is used again.
   FoundHits found_;
   OpenEnds open_;
@@ -97,51 +101,16 @@ struct TraceUnit {
   std::vector<Ray> primaries_;
 };
 
-// Open hits wait here, or at a shade task if light is still to come.
-template <class GoesOn>
-void TraceUnit::traceTrees(std::span<Ray> rays, std::span<const double> begin, std::span<const ReplyTo> to,
-                           GoesOn goesOn) {
-  open_.clear();
-  Color seen[kBundleSize];
-  const std::uint64_t hitsBefore = counts.hits;
-  const RaySet unknown = tracer.trace(rays, begin, seen, open_);
-  replies.countCombined(counts.hits - hitsBefore - open_.hits.size());
-  for (std::size_t i = 0; i < rays.size(); ++i)
-    if ((unknown >> i & 1) == 0) replies.answer(to[i], seen[i]);
-
-  replyOf_.resize(open_.hits.size());
-  const auto slotOf = [](ReplyTo hit, OpenEnds::Branch branch) {
-    hit.slot = branch == OpenEnds::Branch::transmitted ? kTransmittedSlot : kReflectedSlot;
-    return hit;
-  };
-  const auto replyTo = [&](const OpenEnds::Waiting& waiting) {
-    return waiting.hit == OpenEnds::kBundle ? to[waiting.ray] : slotOf(replyOf_[waiting.hit], waiting.branch);
-  };
-  for (std::size_t h = open_.hits.size(); h-- > 0;) {
-    OpenEnds::OpenHit& hit = open_.hits[h];
-    const ReplyTo up = replyTo(hit.to);
-    if (hit.unlit == OpenEnds::kLit) {
-      replyOf_[h] = replies.await(hit.sum, hit.back, up);
-    } else {
-      OpenEnds::UnlitHit& unlit = open_.unlit[hit.unlit];
-      replyOf_[h] = shader.handOver(unlit.light, unlit.ray, hit.back, up);
-    }
-    if (hit.transmitted) replies.answer(slotOf(replyOf_[h], OpenEnds::Branch::transmitted), *hit.transmitted);
-    if (hit.reflected) replies.answer(slotOf(replyOf_[h], OpenEnds::Branch::reflected), *hit.reflected);
-  }
-  for (OpenEnds::OpenRay& open : open_.rays) goesOn(std::move(open.ray), open.next, replyTo(open.to));
-}
-
-template <class Queue, class GoesOn>
+template <class Queue>
 void TraceUnit::traceOnce(std::span<Ray> rays, std::span<const double> begin, std::span<const ReplyTo> to,
-                          Queue queue, GoesOn goesOn) {
+                          Queue queue) {
   traceRays(space, rays, begin, found_, counts);
   RayHit hits[kBundleSize];
   ReplyTo replyOf[kBundleSize];
   std::size_t count = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     if (!found_.resolved(i)) {
-      goesOn(std::move(rays[i]), found_.next[i], to[i]);
+      goOn(std::move(rays[i]), found_.next[i], to[i]);
     } else if (found_.hits[i].found()) {
       hits[count] = {&rays[i], found_.hits[i], found_.models[i]};
       replyOf[count++] = to[i];
@@ -152,8 +121,8 @@ void TraceUnit::traceOnce(std::span<Ray> rays, std::span<const double> begin, st
   shader.shade(std::span(hits).first(count), std::span(replyOf).first(count), queue);
 }
 
-template <class Queue, class GoesOn>
-bool TraceUnit::traceTile(Queue queue, GoesOn goesOn) {
+template <class Queue>
+bool TraceUnit::traceTile(Queue queue) {
   SampleId samples[kBundleSize];
   RecordId records[kBundleSize];
   const std::size_t count = tiles.next(samples, records);
@@ -163,7 +132,9 @@ bool TraceUnit::traceTile(Queue queue, GoesOn goesOn) {
   counts.primaryRays += count;
   ReplyTo to[kBundleSize];
   for (std::size_t i = 0; i < count; ++i) to[i] = {context.link.self(), records[i], 0};
-  trace(primaries_, {}, std::span(to).first(count), queue, goesOn);
+  const std::uint64_t before = travelling_;
+  trace(primaries_, {}, std::span(to).first(count), queue);
+  forwardedRays += travelling_ - before;
   return true;
 }
 

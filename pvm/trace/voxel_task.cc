@@ -46,6 +46,7 @@ void VoxelTask::on(TaskId from, Configure message) {
   const unsigned share = std::max(1u, context_.link.cores() / tracersBeside(directory, number));
   const unsigned threads = message.threads > 0 ? std::min(message.threads, share) : share;
   unit_.begin(from, std::move(message), number / perCluster, number);
+  unit_.fetchesForRays = takesTiles_ && unit_.space.blocks().fetches();
   holders_.begin(unit_.at.directory, context_.link.self());
   share_.prepare(unit_.at.exposure, unit_.at.tree, unit_.at.directory.voxels, number % perCluster);
   context_.outbox.post(from, Ready{context_.epoch, arithmeticFingerprint(), share_.objects(), share_.owned(),
@@ -82,7 +83,11 @@ void VoxelTask::on(TaskId, CellItems message) {
     ++context_.outbox.traffic.refused;
     return;
   }
-  unit_.shadows.resume(cell);
+  for (RayBundle rays = unit_.arrive(cell); !rays.empty();) {
+    bundle_.clear();
+    rays.moveLast(std::min(rays.size(), kBundleSize), bundle_);
+    traceBundle();
+  }
 }
 
 Report VoxelTask::counted() const {
@@ -175,9 +180,7 @@ bool VoxelTask::traceSome() {
     }
     traceBundle();
   } else {
-    any = unit_.traceTile(
-        [this](Ray&& ray, const ReplyTo& to) { queue(std::move(ray), to); },
-        [this](Ray&& ray, const NextBlock& next, const ReplyTo& to) { goOn(std::move(ray), next, to); });
+    any = unit_.traceTile([this](Ray&& ray, const ReplyTo& to) { queue(std::move(ray), to); });
   }
   unit_.sendTiles(host_);
   // Where there are pyramid tasks, who is busy with rays leaves tiles to those who are idle.
@@ -198,21 +201,13 @@ void VoxelTask::takePrimaries() {
 }
 
 void VoxelTask::traceBundle() {
-  unit_.trace(
-      bundle_.rays, bundle_.begin, bundle_.to,
-      [this](Ray&& ray, const ReplyTo& to) { queue(std::move(ray), to); },
-      [this](Ray&& ray, const NextBlock& next, const ReplyTo& to) { goOn(std::move(ray), next, to); });
+  unit_.trace(bundle_.rays, bundle_.begin, bundle_.to,
+              [this](Ray&& ray, const ReplyTo& to) { queue(std::move(ray), to); });
 }
 
 void VoxelTask::queue(Ray&& ray, const ReplyTo& to) {
   rays_.add(std::move(ray), 0, to);
   context_.notePeak(waiting());
-}
-
-// It travels, now and then with a debt that has its cell fetched for those that come later.
-void VoxelTask::goOn(Ray&& ray, const NextBlock& next, const ReplyTo& to) {
-  if (takesTiles_ && unit_.space.blocks().fetches()) unit_.cells.missed(next.cell, 1, false);
-  unit_.replies.forward(unit_.at.ownerOf(next.voxel), std::move(ray), next.step, to);
 }
 
 void VoxelTask::traceShadows() {

@@ -62,7 +62,6 @@ class VoxelTask {
   bool traceSome();
   void traceBundle();
   void queue(Ray&& ray, const ReplyTo& to);
-  void goOn(Ray&& ray, const NextBlock& next, const ReplyTo& to);
   void traceShadows();
 
   TaskContext context_;
