@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pvm/messages/outbox.h"
 
-#include <source_location>
 #include <string_view>
 
 namespace rayshade {
@@ -25,7 +24,7 @@ namespace {
 // The compiler knows the name of a type: "... [with M = rayshade::RayTask]" or "[M = rayshade::RayTask]".
 template <class M>
 std::string nameOf() {
-  const std::string_view here = std::source_location::current().function_name();
+  const std::string_view here = __PRETTY_FUNCTION__;
   const std::size_t begin = here.rfind("M = ") + 4;
   const std::string_view name = here.substr(begin, here.find_first_of(";]", begin) - begin);
   return std::string(name.substr(name.rfind("::") + 2));
