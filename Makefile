@@ -109,16 +109,15 @@ $(BUILD)/flags $(BUILD)/sources $(BUILD)/commit: always
 	@echo '$(subst ','\'',$(now))' | cmp -s - $@ || echo '$(subst ','\'',$(now))' >$@
 
 $(core) $(tasks): private also := $(long_running)
-# Tests are compiled for once; what nearly all of them begin with is read once.
+# What nearly all tests begin with is read once.
 precompiled := $(BUILD)/tests/gtest.h
 precompiled_for := $(precompiled).$(if $(findstring clang,$(CXX)),pch,gch)
-quick := $(if $(OPTIMIZE)$(SAN),,-O1)
-$(tests) $(pvm_tests) $(link_tests): private also := $(quick) -include $(precompiled)
+$(tests) $(pvm_tests) $(link_tests): private also := -include $(precompiled)
 $(tests) $(pvm_tests) $(link_tests): | $(precompiled_for)
 $(precompiled_for): $(BUILD)/flags
 	@mkdir -p $(@D)
 	@echo '#include <gtest/gtest.h>' >$(precompiled)
-	$(quietly)$(CXX) $(FLAGS) $(quick) $(EXTRA_FLAGS) -x c++-header $(precompiled) -o $@
+	$(quietly)$(CXX) $(FLAGS) $(EXTRA_FLAGS) -x c++-header $(precompiled) -o $@
 $(version): private also := -DRAYSHADE_COMMIT='"$(commit)"'
 $(version): $(BUILD)/commit
 $(BUILD)/%.o: %.cc $(BUILD)/flags
